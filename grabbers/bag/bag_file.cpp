@@ -11,7 +11,7 @@
 #include "grabbers/bag/sqlite_reader.hpp"
 #include "pipeline/files/list_files.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 /// The first bytes of a file, enough to determine its format.
@@ -22,7 +22,7 @@ struct Begin {
 
 Begin begin_of(const std::filesystem::path& file) {
   constexpr std::size_t kEnoughBytes = 16;
-  ByteStream stream(file);
+  files::ByteStream stream(file);
   std::string bytes(kEnoughBytes, '\0');
   bytes.resize(stream.read(bytes.data(), bytes.size()));
   return {.bytes = bytes, .is_compressed = !bytes.empty() && stream.size() == 0};
@@ -38,8 +38,8 @@ bool is_bag(std::string_view head) {
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::filesystem::path> files;
-  for (const auto& file : list_files(path)) {
-    if (has_extension(file, {".mcap", ".db3", ".bag"})) files.push_back(file);
+  for (const auto& file : files::list_files(path)) {
+    if (files::has_extension(file, {".mcap", ".db3", ".bag"})) files.push_back(file);
   }
   if (files.empty())
     throw Error(path.string() + " holds no bag", "a bag is a file NAME.bag, NAME.mcap or NAME.db3");
@@ -68,4 +68,4 @@ BagFile::BagFile(const std::filesystem::path& file, std::function<bool()> interr
     reader_ = std::make_unique<Rosbag1Reader>(*stream_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

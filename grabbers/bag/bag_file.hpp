@@ -13,7 +13,7 @@
 #include "grabbers/bag/bag_reader.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// How bags' names end.
 inline std::vector<std::string> bag_extensions() { return {".bag", ".mcap", ".db3"}; }
@@ -36,10 +36,10 @@ class BagFile {
   BagReader& reader() { return *reader_; }
 
  private:
-  std::optional<ByteStream> bytes_;
-  std::optional<ByteStreamBuffer> buffer_;
+  std::optional<files::ByteStream> bytes_;
+  std::optional<files::ByteStreamBuffer> buffer_;
   std::optional<std::istream> stream_;
   std::unique_ptr<BagReader> reader_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -4,7 +4,7 @@
 #include "grabbers/bag/bag_file.hpp"
 #include "grabbers/bag/bag_summary.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 Inspection inspect_bag(const std::filesystem::path& file, const Rig&) {
@@ -17,4 +17,4 @@ Inspection inspect_bag(const std::filesystem::path& file, const Rig&) {
 
 Inspector bag_inspector() { return {"a bag", is_bag, inspect_bag, bag_extensions()}; }
 
-}  // namespace crisp
+}  // namespace crisp::bag

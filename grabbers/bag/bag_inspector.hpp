@@ -3,9 +3,9 @@
 
 #include <crisp/inspector.hpp>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Inspector of bags, for `crisp info`.
 Inspector bag_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::bag

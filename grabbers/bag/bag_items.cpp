@@ -13,7 +13,7 @@
 #include "pipeline/data/echoes.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr std::int64_t kNsInUs = 1000;
@@ -69,8 +69,8 @@ std::shared_ptr<const Scan> BagItems::add(ScanMessage message, std::int64_t rece
   scan->timing = BeamTiming::stated;
   scan->beam_interval = message.time_increment;
   scan->echoes = std::move(message.echoes);
-  EchoCounts counts;
-  const auto used = with_used_echoes(scan, rig_.lasers[laser].echo, counts);
+  data::EchoCounts counts;
+  const auto used = data::with_used_echoes(scan, rig_.lasers[laser].echo, counts);
   const auto note = [&](const char* what, std::uint64_t n) {
     if (n > 0) losses_[fmt::format("{}: {}", rig_.lasers[laser].name, what)] += n;
   };
@@ -106,7 +106,7 @@ Measurements BagItems::beams_of(const std::vector<LaserPoint>& points, double be
     const double reported = on_head ? point.elevation : point.azimuth;
     beams.range.push_back(point.range);
     beams.mirror_angle.push_back(
-        static_cast<float>(wrapped_mirror_angle(reported - rig_.lasers[laser].mount)));
+        static_cast<float>(data::wrapped_mirror_angle(reported - rig_.lasers[laser].mount)));
     beams.time.push_back(begin + point.time);
     beams.laser.push_back(laser);
     beams.remission.push_back(point.remission);
@@ -166,16 +166,16 @@ std::map<std::string, std::uint64_t> BagItems::losses() const {
 std::shared_ptr<const Measurements> BagItems::measured(const Stamped& stamped) const {
   if (stamped.points) return stamped.points;
   const Scan& scan = *stamped.scan;
-  std::vector<BeamEchoes> echoes;
+  std::vector<table::BeamEchoes> echoes;
   for (const Echo& echo : scan.echoes) echoes.push_back({echo.ranges, echo.remissions});
   auto beams = std::make_shared<Measurements>();
   beams->epoch_ns = *epoch_ns_;
-  append_beams({.first_angle = scan.start_angle - rig_.lasers[scan.laser].mount,
-                .angle_step = scan.angle_step,
-                .first_time = stamped.time,
-                .interval = scan.beam_interval,
-                .laser = scan.laser},
-               echoes, *beams);
+  table::append_beams({.first_angle = scan.start_angle - rig_.lasers[scan.laser].mount,
+                       .angle_step = scan.angle_step,
+                       .first_time = stamped.time,
+                       .interval = scan.beam_interval,
+                       .laser = scan.laser},
+                      echoes, *beams);
   return beams;
 }
 
@@ -185,4 +185,4 @@ void BagItems::for_each_measured(const std::function<void(std::shared_ptr<const 
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

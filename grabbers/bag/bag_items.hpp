@@ -19,7 +19,7 @@
 #include "grabbers/devices/rotating_head.hpp"
 #include "grabbers/table/actuator_angles.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// [s] until all beams of a scan were fired.
 double duration_of_beams(const ScanMessage& message);
@@ -47,7 +47,7 @@ class BagItems {
   std::optional<PlateReading> add(const AngleMessage& message, std::int64_t receipt_ns, double lasts = 0);
 
   /// The 3D laser whose azimuths are the plate's angles; nullptr if the bag had none so far.
-  RotatingHead* head() { return head_ ? &*head_ : nullptr; }
+  devices::RotatingHead* head() { return head_ ? &*head_ : nullptr; }
   /// @throws Error if most points of a laser, or azimuths of the head, cannot be of it
   void check() const;
 
@@ -78,9 +78,9 @@ class BagItems {
   double max_gap_;
   std::optional<std::int64_t> epoch_ns_;
   JointRotation rotation_;
-  ActuatorAngles angles_;
+  table::ActuatorAngles angles_;
   PointCones cones_;
-  std::optional<RotatingHead> head_;
+  std::optional<devices::RotatingHead> head_;
   std::uint16_t readings_ = 0;  ///< wraps, as a device's counter does
   std::map<std::uint16_t, std::uint16_t> counters_;
   std::map<std::uint16_t, std::optional<std::int64_t>> last_scan_ns_;
@@ -89,4 +89,4 @@ class BagItems {
   std::map<std::string, std::uint64_t> losses_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

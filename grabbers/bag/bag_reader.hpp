@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Encoding of a message's fields.
 enum class RosEncoding {
@@ -64,4 +64,4 @@ class BagReader {
   std::map<std::string, std::uint64_t> losses_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -10,7 +10,7 @@
 #include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 void check_topic(const RigLaser& laser, const Rig& rig) {
@@ -126,4 +126,4 @@ std::vector<std::string> BagRoutes::missing() const {
   return topics;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -12,7 +12,7 @@
 #include "grabbers/bag/point_cloud.hpp"
 #include "grabbers/bag/ros_scan_messages.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Role of a topic's messages in the rig.
 struct BagRoute {
@@ -53,4 +53,4 @@ class BagRoutes {
   std::optional<std::string> guessed_plate_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -10,7 +10,7 @@
 
 #include "grabbers/bag/byte_cursor.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// The state of a run while its files are read.
 struct BagStage::Run {
@@ -38,7 +38,7 @@ void BagStage::describe(StageDescription<BagStage>& d) {
   d.option(
        "actuator", &BagStage::actuator_,
        "motion of the plate during a scan whose message holds its angle: it moves, or it stands at that angle")
-      .choices({{"moves", ActuatorMotion::moves}, {"stands", ActuatorMotion::stands}});
+      .choices({{"moves", table::ActuatorMotion::moves}, {"stands", table::ActuatorMotion::stands}});
   d.option("max_gap", &BagStage::max_gap_, "longest silence of the angles to interpolate across")
       .unit("s")
       .range(1e-6, 1e6);
@@ -65,7 +65,7 @@ void BagStage::use(const BagRoute& route, const BagMessage& message, Run& run) c
   if (route.scans) scan = route.scans->decode(message.data);
   if (route.angles) {
     const auto angle = route.angles->decode(message.data);
-    const bool stands = scan && actuator_ == ActuatorMotion::stands;
+    const bool stands = scan && actuator_ == table::ActuatorMotion::stands;
     const auto reading =
         angle ? run.items.add(*angle, message.receipt_ns, stands ? duration_of_beams(*scan) : 0)
               : std::nullopt;
@@ -149,10 +149,11 @@ void BagStage::process(const Inputs&, Outputs& out, Context& context) {
   }
   report(run);
   run.items.check();
-  if (RotatingHead* head = run.items.head(); head && head->azimuths() > 1) head->take_rest().give_to(out);
+  if (devices::RotatingHead* head = run.items.head(); head && head->azimuths() > 1)
+    head->take_rest().give_to(out);
   if (!run.items.has_trajectory()) return;
   out.give(run.items.trajectory());
   run.items.for_each_measured([&](std::shared_ptr<const Measurements> beams) { out.give(std::move(beams)); });
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

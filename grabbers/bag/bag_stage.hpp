@@ -12,7 +12,7 @@
 #include "grabbers/bag/bag_routes.hpp"
 #include "grabbers/table/table_items.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// `grabber.bag`: scans and angles of the plate from a bag of ROS 1 or ROS 2.
 class BagStage final : public Stage {
@@ -31,10 +31,10 @@ class BagStage final : public Stage {
   bool is_requested(std::int64_t receipt_ns, Run& run) const;
 
   std::filesystem::path file_;
-  ActuatorMotion actuator_ = ActuatorMotion::moves;
+  table::ActuatorMotion actuator_ = table::ActuatorMotion::moves;
   double max_gap_ = 1;
   double begin_ = 0;
   std::optional<double> duration_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -10,7 +10,7 @@
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/ros_message_schema.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr double kSecondsPerNs = 1e-9;
@@ -139,4 +139,4 @@ nlohmann::json to_json(const BagSummary& summary) {
   return {{"format", summary.format}, {"topics", topics}, {"losses", summary.losses}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -12,7 +12,7 @@
 
 #include "grabbers/bag/bag_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Summary of one topic of a bag.
 struct TopicSummary {
@@ -43,4 +43,4 @@ BagSummary summarize(BagReader& reader);
 std::string to_text(const BagSummary& summary);
 nlohmann::json to_json(const BagSummary& summary);
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::bag {
 
 static_assert(std::endian::native == std::endian::little, "bags are read on little-endian machines");
 
@@ -46,4 +46,4 @@ class ByteCursor {
   BagDamage damage_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/bag/chunked_bag_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 std::optional<BagMessage> ChunkedBagReader::next() {
   message_.reset();
@@ -20,4 +20,4 @@ std::optional<BagMessage> ChunkedBagReader::next() {
   return message_;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -5,7 +5,7 @@
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/exact_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// A bag whose records lie in chunks, each compressed by itself, and between them. A damaged record costs the
 /// rest of its chunk.
@@ -37,4 +37,4 @@ class ChunkedBagReader : public BagReader {
   std::optional<BagMessage> message_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -10,7 +10,7 @@
 
 #include "grabbers/bag/byte_cursor.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr const char* kDamaged = "chunks that cannot be decompressed";
@@ -75,4 +75,4 @@ std::string_view decompress(std::string_view method, std::string_view bytes, std
   return room;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Decompresses a chunk.
 /// @param method  "", "none", "bz2", "lz4" (a frame) or "zstd"
@@ -16,4 +16,4 @@ namespace crisp {
 std::string_view decompress(std::string_view method, std::string_view bytes, std::uint64_t size,
                             std::string& room);
 
-}  // namespace crisp
+}  // namespace crisp::bag

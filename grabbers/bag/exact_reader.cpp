@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace crisp {
+namespace crisp::bag {
 
 bool ExactReader::read(std::uint64_t n, std::string& to) {
   constexpr std::uint64_t kAtOnce = 1 << 24;
@@ -26,4 +26,4 @@ bool ExactReader::skip(std::uint64_t n) {
   return static_cast<std::uint64_t>(in_.gcount()) == n;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

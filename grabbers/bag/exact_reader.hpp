@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Exact numbers of bytes from a stream, whatever a damaged length claims: memory grows as bytes come.
 class ExactReader {
@@ -23,4 +23,4 @@ class ExactReader {
   std::istream& in_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -5,7 +5,7 @@
 
 #include "grabbers/bag/byte_cursor.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 double JointRotation::angle(const std::array<double, 4>& xyzw) {
   constexpr double kMinLength = 1e-3;
@@ -26,4 +26,4 @@ double JointRotation::angle(const std::array<double, 4>& xyzw) {
   return sense * 2 * std::atan2(sine, turned.w());
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

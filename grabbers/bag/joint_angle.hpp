@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// The angle of a revolute joint from its rotations, as tf and poses give them: about the joint's axis,
 /// counted from the first rotation, so that a constant rotation before the joint does not matter.
@@ -24,4 +24,4 @@ class JointRotation {
   std::optional<Eigen::Vector3d> axis_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

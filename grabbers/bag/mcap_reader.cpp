@@ -8,7 +8,7 @@
 #include "grabbers/bag/decompress.hpp"
 #include "grabbers/bag/ros_names.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 /// Kind of a record, by its first byte.
@@ -110,4 +110,4 @@ void McapReader::take_record_of(ByteCursor& chunk) {
   use(op, content);
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

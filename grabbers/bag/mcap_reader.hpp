@@ -5,7 +5,7 @@
 
 #include "grabbers/bag/chunked_bag_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Reads MCAP files (mcap.dev/spec) from front to back: their index is not needed, so that one that was not
 /// closed is read as far as it goes.
@@ -36,4 +36,4 @@ class McapReader final : public ChunkedBagReader {
   std::map<std::uint16_t, std::size_t> index_;  ///< of a channel's number in the file
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -9,7 +9,7 @@
 
 #include "grabbers/bag/byte_cursor.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr const char* kNoCloud = "point clouds that cannot be";
@@ -127,4 +127,4 @@ PointMessage PointDecoder::decode(std::string_view message) const {
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

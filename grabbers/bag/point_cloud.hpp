@@ -8,7 +8,7 @@
 
 #include "grabbers/bag/ros_message_schema.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// One point of a laser in the laser's own frame.
 struct CloudPoint {
@@ -43,4 +43,4 @@ class PointDecoder {
   RosEncoding encoding_ = RosEncoding::other;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -10,7 +10,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr double kTolerance = 0.01;            // [rad] of an elevation: half a degree
@@ -23,7 +23,7 @@ std::optional<double> elevation_of(const PointMessage& message, int ring) {
     if (point.ring == ring) elevations.push_back(point.elevation);
   }
   if (elevations.empty()) return {};
-  return median_in_place(elevations);
+  return statistics::median_in_place(elevations);
 }
 
 }  // namespace
@@ -84,4 +84,4 @@ void PointCones::check() const {
   for (std::size_t i = 0; i < cones_.size(); ++i) check(static_cast<std::uint16_t>(i));
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -12,7 +12,7 @@
 
 #include "grabbers/bag/point_cloud.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// A point of a cloud with the laser that measured it.
 struct LaserPoint {
@@ -50,4 +50,4 @@ class PointCones {
   std::map<std::string, std::uint64_t> losses_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -4,11 +4,11 @@
 #include "grabbers/bag/bag_inspector.hpp"
 #include "grabbers/bag/bag_stage.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 void register_bag(Registrar& registrar) {
   registrar.stage<BagStage>();
   registrar.inspector(bag_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Registers grabber.bag, and the inspector of bags for `crisp info`.
 void register_bag(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -5,7 +5,7 @@
 
 #include "grabbers/bag/ros_message_schema.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr std::string_view kHeader =
@@ -67,4 +67,4 @@ std::string known_ros_definition(std::string_view type) {
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

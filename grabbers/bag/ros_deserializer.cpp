@@ -5,7 +5,7 @@
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/ros_message_schema.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr const char* kTooShort = "messages that end before their content";
@@ -132,4 +132,4 @@ std::vector<RosValue> decode_ros(const RosMessageSchema& layout, RosEncoding enc
   return Decoder(layout, encoding, message).decode();
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -11,7 +11,7 @@
 #include "grabbers/bag/byte_cursor.hpp"
 #include "grabbers/bag/ros_names.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 const std::map<std::string, RosType, std::less<>> kPrimitives = {
@@ -181,4 +181,4 @@ std::optional<RosMessageSchema> parse_ros_layout(const std::string& type, const 
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

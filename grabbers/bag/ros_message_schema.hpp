@@ -9,7 +9,7 @@
 
 #include "grabbers/bag/bag_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Type of a message's field.
 enum class RosType : std::uint8_t {
@@ -84,4 +84,4 @@ std::vector<RosValue> decode_ros(const RosMessageSchema& layout, RosEncoding enc
 /// @param type  "sensor_msgs/LaserScan"
 std::string known_ros_definition(std::string_view type);
 
-}  // namespace crisp
+}  // namespace crisp::bag

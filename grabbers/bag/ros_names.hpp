@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::bag {
 
 /// The name of a type as ROS 1 and ROS 2 both have it: "sensor_msgs/msg/LaserScan" → "sensor_msgs/LaserScan".
 inline std::string plain_ros_type(std::string_view name) {
@@ -14,4 +14,4 @@ inline std::string plain_ros_type(std::string_view name) {
   return plain;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -12,7 +12,7 @@
 #include "grabbers/bag/byte_cursor.hpp"
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr std::int64_t kSecondInNs = 1'000'000'000;
@@ -222,4 +222,4 @@ std::optional<AngleMessage> AngleDecoder::decode(std::string_view message) const
   return reading;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -12,7 +12,7 @@
 
 #include "grabbers/bag/ros_message_schema.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// A sensor_msgs/LaserScan or MultiEchoLaserScan.
 struct ScanMessage {
@@ -78,4 +78,4 @@ class AngleDecoder {
   std::optional<std::size_t> frames_;      ///< names of the frames of tf: joint_ is the one
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

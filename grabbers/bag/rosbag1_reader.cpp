@@ -5,7 +5,7 @@
 
 #include "grabbers/bag/decompress.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
@@ -99,4 +99,4 @@ void Rosbag1Reader::take_record_of(ByteCursor& chunk) {
   use({header, data});
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -6,7 +6,7 @@
 
 #include "grabbers/bag/chunked_bag_reader.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Reads ROS 1's bags, version 2.0 (wiki.ros.org/Bags/Format/2.0), from front to back: their index is not
 /// needed, so that one that was not closed (.bag.active) or was cut off is read as far as it goes.
@@ -31,4 +31,4 @@ class Rosbag1Reader final : public ChunkedBagReader {
   std::map<std::uint32_t, std::size_t> index_;  ///< of a connection's number in the bag
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

@@ -7,7 +7,7 @@
 
 #include "grabbers/bag/ros_names.hpp"
 
-namespace crisp {
+namespace crisp::bag {
 namespace {
 
 std::string text_of(sqlite3_stmt* row, int column) {
@@ -93,4 +93,4 @@ std::optional<BagMessage> SqliteReader::next() {
   return std::nullopt;
 }
 
-}  // namespace crisp
+}  // namespace crisp::bag

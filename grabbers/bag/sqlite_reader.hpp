@@ -10,7 +10,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace crisp {
+namespace crisp::bag {
 
 /// Reads ROS 2's bags in SQLite (rosbag2_storage_sqlite3, .db3), in the order of their receipt times.
 class SqliteReader final : public BagReader {
@@ -41,4 +41,4 @@ class SqliteReader final : public BagReader {
   std::map<std::int64_t, std::size_t> index_;  ///< of a topic's number in the file
 };
 
-}  // namespace crisp
+}  // namespace crisp::bag

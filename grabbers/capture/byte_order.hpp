@@ -6,13 +6,13 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 enum class ByteOrder : std::uint8_t { Little, Big };
 
 /// The unsigned number at `at`, which must lie within `bytes` with all of its width.
 template <std::unsigned_integral T>
-T number_at(ByteView bytes, std::size_t at, ByteOrder order) {
+T number_at(wire::ByteView bytes, std::size_t at, ByteOrder order) {
   const auto* from = bytes.data() + at;
   std::uint64_t value = 0;
   if (order == ByteOrder::Big) {  // a loop for each, which compilers know as one load
@@ -25,8 +25,8 @@ T number_at(ByteView bytes, std::size_t at, ByteOrder order) {
 
 /// The same in the order of the network.
 template <std::unsigned_integral T>
-T network_number(ByteView bytes, std::size_t at) {
+T network_number(wire::ByteView bytes, std::size_t at) {
   return number_at<T>(bytes, at, ByteOrder::Big);
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

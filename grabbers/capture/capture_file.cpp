@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 namespace {
 
@@ -33,7 +33,7 @@ CaptureFile::CaptureFile(const std::filesystem::path& path, const Place& from, s
   } else if (PcapngBlocks::recognises(begin)) {
     records_.emplace<PcapngBlocks>(file_, losses_);
   } else {
-    throw no_capture(path, as_text(begin));
+    throw no_capture(path, wire::as_text(begin));
   }
   if (from.offset == 0) return;
   file_.move_to(from.offset);
@@ -89,4 +89,4 @@ const Packet* CaptureFile::next() {
   return &current_.packet;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -12,7 +12,7 @@
 #include "grabbers/capture/pcap_records.hpp"
 #include "grabbers/capture/pcapng_blocks.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// The packets of a pcap or pcapng file, one after the other; memory does not depend on the file's size. A
 /// packet whose time lies by more than a second outside of its neighbours', while these are in order, has a
@@ -53,7 +53,7 @@ class CaptureFile {
  private:
   struct Slot {  ///< a packet with bytes of its own
     Packet packet;
-    Bytes bytes;
+    wire::Bytes bytes;
     std::uint64_t offset = 0;  ///< [bytes] in the file
     bool full = false;
   };
@@ -73,4 +73,4 @@ class CaptureFile {
   std::optional<std::int64_t> before_ns_;  ///< time of the packet before the current one
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

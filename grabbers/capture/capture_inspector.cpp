@@ -13,11 +13,11 @@
 #include "grabbers/capture/pcap_records.hpp"
 #include "grabbers/capture/pcapng_blocks.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 bool recognises(std::string_view head) {
-  return PcapRecords::recognises(as_bytes(head)) || PcapngBlocks::recognises(as_bytes(head));
+  return PcapRecords::recognises(wire::as_bytes(head)) || PcapngBlocks::recognises(wire::as_bytes(head));
 }
 
 bool matches(const Address& of_rig, const Address& found) {
@@ -63,4 +63,4 @@ Inspection inspect(const std::filesystem::path& file, const Rig& rig) {
 
 Inspector capture_inspector() { return {"a capture", recognises, inspect, capture_extensions()}; }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -3,9 +3,9 @@
 
 #include <crisp/inspector.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Describes a capture's content, from any sender; devices at an address of the rig get its names.
 Inspector capture_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -18,25 +18,27 @@
 namespace crisp {
 namespace {
 
+using capture::FlowDecoder;
+
 constexpr std::size_t kMaxFlows = 4096;
 constexpr std::string_view kPlateMark = "$PPLT,";
 
 }  // namespace
 
 struct CaptureReader::Traffic {
-  Traffic(const std::filesystem::path& path, DeviceRegistry all, const CaptureSettings& how)
+  Traffic(const std::filesystem::path& path, devices::DeviceRegistry all, const CaptureSettings& how)
       : file(path, [this, stop = how.interrupted] { return interrupted || (stop && stop()); }),
         devices(std::move(all)),
         settings(how) {}
 
   std::atomic<bool> interrupted = false;
-  OrderedCapture file;
-  DeviceRegistry devices;
+  capture::OrderedCapture file;
+  devices::DeviceRegistry devices;
   CaptureSettings settings;
-  FragmentAssembler fragments;
-  std::unordered_map<FlowKey, std::unique_ptr<FlowDecoder>> flows;
+  capture::FragmentAssembler fragments;
+  std::unordered_map<devices::FlowKey, std::unique_ptr<FlowDecoder>> flows;
   std::vector<FlowDecoder*> rig_flows;
-  ReorderBuffer<HubItem> merge;
+  capture::ReorderBuffer<HubItem> merge;
   FlowDecoder::Give give = [this](HubItem item) {
     const std::int64_t time_ns = receipt_ns(item);
     merge.push(time_ns, std::move(item));
@@ -47,8 +49,8 @@ struct CaptureReader::Traffic {
   bool ended = false;
 
   bool read_packet();
-  void take_ip(const IpPacket& ip, std::int64_t time_ns);
-  FlowDecoder* find_flow(const TransportPacket& packet);
+  void take_ip(const devices::IpPacket& ip, std::int64_t time_ns);
+  FlowDecoder* find_flow(const devices::TransportPacket& packet);
   void forget_flows();
   std::int64_t limit_ns();
   void finish();
@@ -59,8 +61,8 @@ struct CaptureReader::Traffic {
 bool CaptureReader::Traffic::read_packet() {
   const auto* packet = file.next();
   if (packet == nullptr) return false;
-  const auto found = dissect_ip(*packet);
-  const auto* sent = std::get_if<IpPacket>(&found);
+  const auto found = capture::dissect_ip(*packet);
+  const auto* sent = std::get_if<devices::IpPacket>(&found);
   const std::int64_t time_ns = packet->time_ns + (sent == nullptr ? 0 : file.shift_of(*sent));
   newest_ns = totals.packets == 0 ? time_ns : std::max(newest_ns, time_ns);
   totals.first_ns = totals.packets == 0 ? time_ns : std::min(totals.first_ns, time_ns);
@@ -68,12 +70,12 @@ bool CaptureReader::Traffic::read_packet() {
   ++totals.packets;
   totals.bytes += packet->bytes.size();
   ++link_types[packet->link_type];
-  if (const auto* reason = std::get_if<NoIp>(&found)) {
-    if (*reason == NoIp::Damaged) totals.losses.add("packets with damaged headers");
-    if (*reason == NoIp::UnknownLinkType) totals.losses.add("packets of unsupported link types");
+  if (const auto* reason = std::get_if<capture::NoIp>(&found)) {
+    if (*reason == capture::NoIp::Damaged) totals.losses.add("packets with damaged headers");
+    if (*reason == capture::NoIp::UnknownLinkType) totals.losses.add("packets of unsupported link types");
     return true;
   }
-  const IpPacket& ip = *sent;
+  const devices::IpPacket& ip = *sent;
   if (!ip.is_fragment()) {
     take_ip(ip, time_ns);
   } else if (const auto whole = fragments.take(ip, time_ns)) {
@@ -82,22 +84,23 @@ bool CaptureReader::Traffic::read_packet() {
   return true;
 }
 
-void CaptureReader::Traffic::take_ip(const IpPacket& ip, std::int64_t time_ns) {
+void CaptureReader::Traffic::take_ip(const devices::IpPacket& ip, std::int64_t time_ns) {
   bool damaged = false;
-  const auto packet = dissect_transport(ip, damaged);
+  const auto packet = capture::dissect_transport(ip, damaged);
   if (damaged) totals.losses.add("packets with damaged headers");
   if (!packet) return;
   if (packet->missing > 0) ++totals.truncated;
   if (auto* flow = find_flow(*packet)) flow->take(*packet, time_ns);
 }
 
-FlowDecoder* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
+FlowDecoder* CaptureReader::Traffic::find_flow(const devices::TransportPacket& packet) {
   const auto found = flows.find(packet.key);
   if (found != flows.end()) return found->second.get();
   auto* known = devices.known(packet.key);
   const bool has_content = !packet.payload.empty() || packet.syn;
-  const bool like_a_plate = as_text(packet.payload).find(kPlateMark) != std::string_view::npos;
-  if (known == nullptr && (!has_content || (packet.key.transport == Transport::Udp && !like_a_plate)))
+  const bool like_a_plate = wire::as_text(packet.payload).find(kPlateMark) != std::string_view::npos;
+  if (known == nullptr &&
+      (!has_content || (packet.key.transport == devices::Transport::Udp && !like_a_plate)))
     return nullptr;
   if (flows.size() >= kMaxFlows) forget_flows();
   auto flow = std::make_unique<FlowDecoder>(packet.key, devices, known, settings, give);
@@ -109,7 +112,7 @@ FlowDecoder* CaptureReader::Traffic::find_flow(const TransportPacket& packet) {
 void CaptureReader::Traffic::forget_flows() {
   std::vector<std::int64_t> ages;
   for (const auto& [key, flow] : flows) ages.push_back(flow->last_ns());
-  const std::int64_t middle = median_in_place(ages);
+  const std::int64_t middle = statistics::median_in_place(ages);
   const auto old = [&](const FlowDecoder& flow) { return flow.last_ns() <= middle; };
   std::erase_if(rig_flows, [&](const FlowDecoder* flow) { return old(*flow); });
   for (auto& [key, flow] : flows) {
@@ -120,7 +123,7 @@ void CaptureReader::Traffic::forget_flows() {
 
 /// Items received before this are complete and in order.
 std::int64_t CaptureReader::Traffic::limit_ns() {
-  auto limit = newest_ns - kMaxReordering;
+  auto limit = newest_ns - capture::kMaxReordering;
   const auto longest = static_cast<std::int64_t>(1e9 * settings.max_wait);
   for (auto* flow : rig_flows) {
     flow->expire(newest_ns);
@@ -132,7 +135,7 @@ std::int64_t CaptureReader::Traffic::limit_ns() {
 void CaptureReader::Traffic::finish() {
   ended = true;
   fragments.finish();
-  std::vector<std::pair<FlowKey, FlowDecoder*>>
+  std::vector<std::pair<devices::FlowKey, FlowDecoder*>>
       ordered;  // so that what ends gives comes in the same order everywhere
   for (auto& [key, flow] : flows) ordered.emplace_back(key, flow.get());
   std::sort(ordered.begin(), ordered.end());
@@ -143,7 +146,8 @@ void CaptureReader::Traffic::finish() {
 
 std::optional<HubItem> CaptureReader::Traffic::next() {
   while (!interrupted) {
-    if (ended ? !merge.empty() : merge.has(newest_ns - kMaxReordering)) {  // no limit is later than this
+    if (ended ? !merge.empty()
+              : merge.has(newest_ns - capture::kMaxReordering)) {  // no limit is later than this
       if (auto next = ended ? merge.pop() : merge.pop(limit_ns())) {
         if (next->time_ns < given_ns)
           totals.notes.add("items out of order, since the hub's clock stepped back");
@@ -159,7 +163,7 @@ std::optional<HubItem> CaptureReader::Traffic::next() {
 
 CaptureReader::CaptureReader(const std::filesystem::path& file, const Rig& rig,
                              const CaptureSettings& settings)
-    : traffic_(std::make_unique<Traffic>(file, DeviceRegistry(rig), settings)) {}
+    : traffic_(std::make_unique<Traffic>(file, devices::DeviceRegistry(rig), settings)) {}
 
 CaptureReader::CaptureReader(std::unique_ptr<Traffic> traffic) : traffic_(std::move(traffic)) {}
 CaptureReader::~CaptureReader() = default;
@@ -180,7 +184,8 @@ double CaptureReader::progress() const {
 
 CaptureStatistics CaptureReader::statistics() const {
   auto statistics = traffic_->totals;
-  for (const auto& [type, n] : traffic_->link_types) statistics.link_types.add(link_type_name(type), n);
+  for (const auto& [type, n] : traffic_->link_types)
+    statistics.link_types.add(capture::link_type_name(type), n);
   statistics.file_bytes = traffic_->file.offset();
   statistics.remarks = traffic_->file.remarks();
   statistics.losses.add(traffic_->file.losses());
@@ -192,11 +197,11 @@ CaptureStatistics CaptureReader::statistics() const {
   return statistics;
 }
 
-void check_addresses(const Rig& rig) { const DeviceRegistry devices(rig); }
+void check_addresses(const Rig& rig) { const devices::DeviceRegistry devices(rig); }
 
 CaptureStatistics inspect_capture(const std::filesystem::path& file, const CaptureSettings& settings,
                                   const RigPlate& plate) {
-  DeviceRegistry devices;
+  devices::DeviceRegistry devices;
   if (plate.line) devices.add(plate);
   CaptureReader reader(std::make_unique<CaptureReader::Traffic>(file, std::move(devices), settings));
   while (reader.next()) {

@@ -10,7 +10,7 @@
 #include "pipeline/data/counted.hpp"
 #include "pipeline/data/recordings.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr double kNanosecond = 1e-9;
@@ -153,7 +153,7 @@ std::string device_table(const CaptureStatistics& statistics) {
 }
 
 std::string extent_of(const CaptureStatistics& statistics) {
-  auto text = fmt::format("{}, {:.1f} MB", counted(statistics.packets, "packet"),
+  auto text = fmt::format("{}, {:.1f} MB", data::counted(statistics.packets, "packet"),
                           1e-6 * static_cast<double>(statistics.bytes));
   if (statistics.packets == 0) return text;
   const auto first = static_cast<std::time_t>(statistics.first_ns / 1'000'000'000);
@@ -169,7 +169,7 @@ std::string to_text(const CaptureStatistics& statistics) {
   if (statistics.pauses > 0) {
     text += fmt::format(
         "\n  {} recordings in sequence, with {:.1f} s of pauses in all between them (of {:.0f} s and more, which are no losses; a forward step of the hub's clock looks like a pause)",
-        statistics.pauses + 1, statistics.paused, kPause);
+        statistics.pauses + 1, statistics.paused, data::kPause);
   }
   text += list("lost", statistics.losses) + list("noted", statistics.notes);
   if (statistics.devices.empty()) return text + "\nit holds no laser and no plate";
@@ -178,4 +178,4 @@ std::string to_text(const CaptureStatistics& statistics) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -6,7 +6,7 @@
 
 #include <crisp/capture_statistics.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Title of a device: its name in the rig and its address, "laser1 (192.168.0.1:2112)".
 std::string title(const DeviceStatistics& device);
@@ -26,4 +26,4 @@ std::string device_table(const CaptureStatistics& statistics);
 /// All of the statistics, for people: the table, telegrams by kind, losses, and what was out of the ordinary.
 std::string to_text(const CaptureStatistics& statistics);
 
-}  // namespace crisp
+}  // namespace crisp::capture

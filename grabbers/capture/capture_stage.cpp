@@ -9,7 +9,7 @@
 #include "grabbers/capture/read_ahead.hpp"
 #include "grabbers/capture/unknown_devices.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 /// For a plate of which nothing came, while a laser of the rig has an encoder.
@@ -161,4 +161,4 @@ std::uint64_t CaptureStage::report(const CaptureStatistics& statistics, const st
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -10,7 +10,7 @@
 #include <crisp/error.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// `grabber.capture`: gives the scans and readings of a capture of the hub's network interface, or of a
 /// folder of captures.
@@ -43,4 +43,4 @@ class CaptureStage final : public Stage {
   std::uint64_t given_ = 0;               // items
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

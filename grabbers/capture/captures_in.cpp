@@ -10,7 +10,7 @@
 #include "grabbers/capture/capture_file.hpp"
 #include "pipeline/files/list_files.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 /// [ns since the Unix epoch] When the first packet came. @throws Error if there is none, or no capture
@@ -28,7 +28,7 @@ bool begins_like_a_capture(const std::filesystem::path& file) {
 }
 
 bool ought_to_be_a_capture(const std::filesystem::path& file) {
-  if (has_extension(file, capture_extensions())) return true;
+  if (files::has_extension(file, capture_extensions())) return true;
   try {
     return begins_like_a_capture(file);
   } catch (const Error&) {  // unreadable notes do not matter
@@ -43,7 +43,7 @@ Captures captures_in(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path, none)) return {.files = {path}};
   std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
   Captures captures;
-  for (const auto& file : list_files(path)) {
+  for (const auto& file : files::list_files(path)) {
     try {
       found.emplace_back(first_packet(file), file);
     } catch (const Error& error) {  // notes, rigs and results may lie next to captures
@@ -61,4 +61,4 @@ Captures captures_in(const std::filesystem::path& path) {
   return captures;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

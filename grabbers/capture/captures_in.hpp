@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// File name extensions of captures: see has_extension().
 inline std::vector<std::string> capture_extensions() { return {".pcap", ".pcapng", ".cap"}; }
@@ -22,4 +22,4 @@ struct Captures {
 /// @throws Error if a folder cannot be read or holds no capture
 Captures captures_in(const std::filesystem::path& path);
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -7,8 +7,10 @@
 
 #include "grabbers/capture/byte_order.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
+
+using devices::IpPacket;
 
 // https://www.tcpdump.org/linktypes.html; raw IP also by the numbers that BSDs once wrote into files
 enum LinkType : std::uint32_t {
@@ -29,12 +31,12 @@ constexpr std::size_t kIpv4Header = 20, kIpv6Header = 40;
 
 bool is_vlan(std::uint16_t type) { return type == 0x8100 || type == 0x88A8 || type == 0x9100; }
 
-std::variant<IpPacket, NoIp> dissect_ipv4(ByteView bytes, bool cut_short) {
+std::variant<IpPacket, NoIp> dissect_ipv4(wire::ByteView bytes, bool cut_short) {
   if (bytes.size() < kIpv4Header || bytes[0] >> 4 != 4) return NoIp::Damaged;
   const std::size_t header = std::size_t{4} * (bytes[0] & 0xF);
   if (header < kIpv4Header || header > bytes.size()) return NoIp::Damaged;
   const bool checksum_sent = network_number<std::uint16_t>(bytes, 10) != 0;
-  if (checksum_sent && internet_sum(bytes.first(header)) != 0xFFFF) return NoIp::Damaged;
+  if (checksum_sent && devices::internet_sum(bytes.first(header)) != 0xFFFF) return NoIp::Damaged;
   std::size_t total = network_number<std::uint16_t>(bytes, 2);
   if (total == 0) total = bytes.size();  // segments that the network card was to cut
   if (total < header || (total > bytes.size() && !cut_short)) return NoIp::Damaged;
@@ -77,7 +79,7 @@ bool pass_extensions(IpPacket& ip) {
   }
 }
 
-std::variant<IpPacket, NoIp> dissect_ipv6(ByteView bytes, bool cut_short) {
+std::variant<IpPacket, NoIp> dissect_ipv6(wire::ByteView bytes, bool cut_short) {
   if (bytes.size() < kIpv6Header || bytes[0] >> 4 != 6) return NoIp::Damaged;
   std::size_t total = kIpv6Header + network_number<std::uint16_t>(bytes, 4);
   if (total == kIpv6Header) total = bytes.size();  // as above, or a jumbogram
@@ -92,13 +94,13 @@ std::variant<IpPacket, NoIp> dissect_ipv6(ByteView bytes, bool cut_short) {
   return ip;
 }
 
-std::variant<IpPacket, NoIp> by_version(ByteView bytes, bool cut_short) {
+std::variant<IpPacket, NoIp> by_version(wire::ByteView bytes, bool cut_short) {
   if (bytes.empty()) return NoIp::Damaged;
   return bytes[0] >> 4 == 6 ? dissect_ipv6(bytes, cut_short) : dissect_ipv4(bytes, cut_short);
 }
 
 /// @param type_at where the Ethernet type lies; the payload begins `header` bytes from the start
-std::variant<IpPacket, NoIp> by_ethernet_type(ByteView bytes, std::size_t type_at, std::size_t header,
+std::variant<IpPacket, NoIp> by_ethernet_type(wire::ByteView bytes, std::size_t type_at, std::size_t header,
                                               bool cut_short) {
   if (bytes.size() < header) return NoIp::Damaged;
   auto type = network_number<std::uint16_t>(bytes, type_at);
@@ -115,24 +117,24 @@ std::variant<IpPacket, NoIp> by_ethernet_type(ByteView bytes, std::size_t type_a
 
 /// Loopback's header is the address family, a number that differs between systems: the IP version is
 /// sufficient.
-std::variant<IpPacket, NoIp> loopback(ByteView bytes, bool cut_short) {
+std::variant<IpPacket, NoIp> loopback(wire::ByteView bytes, bool cut_short) {
   if (bytes.size() < 5) return NoIp::Damaged;
   const auto version = bytes[4] >> 4;
   if (version != 4 && version != 6) return NoIp::OtherProtocol;
   return by_version(bytes.subspan(4), cut_short);
 }
 
-ChecksumVerdict verify(const IpPacket& ip, std::size_t checksum_at) {
-  if (ip.missing > 0) return ChecksumVerdict::Unknown;
+devices::ChecksumVerdict verify(const IpPacket& ip, std::size_t checksum_at) {
+  if (ip.missing > 0) return devices::ChecksumVerdict::Unknown;
   const auto length = static_cast<std::uint32_t>(ip.payload.size());
   // The prefix of an IPv4 address in its IPv6 form sums to 0xFFFF, which is zero.
-  const auto sum =
-      internet_sum(ip.from, internet_sum(ip.to, ip.protocol + (length & 0xFFFF) + (length >> 16)));
-  if (internet_sum(ip.payload, sum) == 0xFFFF) return ChecksumVerdict::Right;
+  const auto sum = devices::internet_sum(
+      ip.from, devices::internet_sum(ip.to, ip.protocol + (length & 0xFFFF) + (length >> 16)));
+  if (devices::internet_sum(ip.payload, sum) == 0xFFFF) return devices::ChecksumVerdict::Right;
   // A sender's network card is left with the sum of the addresses alone, as are merged segments.
   return network_number<std::uint16_t>(ip.payload, checksum_at) % 0xFFFF == sum % 0xFFFF
-             ? ChecksumVerdict::Unknown
-             : ChecksumVerdict::Wrong;
+             ? devices::ChecksumVerdict::Unknown
+             : devices::ChecksumVerdict::Wrong;
 }
 
 }  // namespace
@@ -161,18 +163,18 @@ std::variant<IpPacket, NoIp> dissect_ip(const Packet& packet) {
   }
 }
 
-std::optional<TransportPacket> dissect_transport(const IpPacket& ip, bool& damaged) {
-  const bool tcp = ip.protocol == static_cast<std::uint8_t>(Transport::Tcp);
-  const bool udp = ip.protocol == static_cast<std::uint8_t>(Transport::Udp);
+std::optional<devices::TransportPacket> dissect_transport(const IpPacket& ip, bool& damaged) {
+  const bool tcp = ip.protocol == static_cast<std::uint8_t>(devices::Transport::Tcp);
+  const bool udp = ip.protocol == static_cast<std::uint8_t>(devices::Transport::Udp);
   if (!tcp && !udp) return {};
   const auto bytes = ip.payload;
   const std::size_t smallest = tcp ? 20 : 8;
   damaged = bytes.size() < smallest;
   if (damaged) return {};
-  TransportPacket packet{.missing = ip.missing};
+  devices::TransportPacket packet{.missing = ip.missing};
   packet.key = {{ip.from, network_number<std::uint16_t>(bytes, 0)},
                 {ip.to, network_number<std::uint16_t>(bytes, 2)},
-                tcp ? Transport::Tcp : Transport::Udp};
+                tcp ? devices::Transport::Tcp : devices::Transport::Udp};
   std::size_t header = smallest, end = bytes.size();
   if (tcp) {
     header = std::size_t{4} * (bytes[12] >> 4);
@@ -215,4 +217,4 @@ std::string link_type_name(std::uint32_t link_type) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

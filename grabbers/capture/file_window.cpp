@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::size_t kRead = 256 * 1024;  // small enough to be in the cache still when it is parsed
@@ -16,7 +16,7 @@ FileWindow::FileWindow(const std::filesystem::path& path, std::function<bool()> 
     : stream_(path, std::move(interrupted)),
       buffer_(std::make_unique_for_overwrite<std::uint8_t[]>(kBuffer)) {}
 
-ByteView FileWindow::peek(std::size_t n) {
+wire::ByteView FileWindow::peek(std::size_t n) {
   if (end_ - begin_ < n) fill(n);
   return {buffer_.get() + begin_, std::min(n, end_ - begin_)};
 }
@@ -49,4 +49,4 @@ void FileWindow::fill(std::size_t requested) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

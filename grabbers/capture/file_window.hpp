@@ -9,7 +9,7 @@
 #include "grabbers/wire/bytes.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// A file (or pipe) read from front to back through a window of constant size.
 class FileWindow {
@@ -24,7 +24,7 @@ class FileWindow {
   /// @param n at most kLargestPeek
   /// @throws Error if the disk fails
   /// @throws Interrupted  when `interrupted` returns true
-  ByteView peek(std::size_t n);
+  wire::ByteView peek(std::size_t n);
 
   /// Moves on by n bytes, or to the end. What peek() gave stays valid if n does not lead beyond it.
   void skip(std::uint64_t n);
@@ -41,10 +41,10 @@ class FileWindow {
  private:
   void fill(std::size_t requested);
 
-  ByteStream stream_;
+  files::ByteStream stream_;
   std::uint64_t offset_ = 0;
   std::unique_ptr<std::uint8_t[]> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< of what was read and not passed, in the buffer
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

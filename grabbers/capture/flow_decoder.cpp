@@ -6,20 +6,21 @@
 
 #include "grabbers/devices/framing_losses.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::size_t kPatience = 256 * 1024;  // [bytes] within which a flow must contain a known telegram
 
-bool is_request(const ColaTelegram& telegram) {
+bool is_request(const wire::ColaTelegram& telegram) {
   return telegram.command == "sRN" || telegram.command == "sWN" || telegram.command == "sMN" ||
          telegram.command == "sEN";
 }
 
 }  // namespace
 
-FlowDecoder::FlowDecoder(const FlowKey& key, DeviceRegistry& devices, DeviceRegistry::Device* known,
-                         const CaptureSettings& settings, const Give& give)
+FlowDecoder::FlowDecoder(const devices::FlowKey& key, devices::DeviceRegistry& devices,
+                         devices::DeviceRegistry::Device* known, const CaptureSettings& settings,
+                         const Give& give)
     : key_(key),
       devices_(devices),
       device_(known),
@@ -28,31 +29,32 @@ FlowDecoder::FlowDecoder(const FlowKey& key, DeviceRegistry& devices, DeviceRegi
       tcp_(*this, static_cast<std::int64_t>(1e9 * settings.max_wait)) {
   const bool laser = known == nullptr || known->kind == DeviceKind::Laser;
   const bool plate = known == nullptr || known->kind == DeviceKind::Plate;
-  if (laser && key.transport == Transport::Tcp) cola_ = std::make_unique<ColaFramer>();
+  if (laser && key.transport == devices::Transport::Tcp) cola_ = std::make_unique<wire::ColaFramer>();
   if (plate) plate_ = plate_framer();
-  const bool sure = known != nullptr && (known->port != 0 || is_sick_port(key.from.port));
+  const bool sure = known != nullptr && (known->port != 0 || devices::is_sick_port(key.from.port));
   if (sure) speech_ = laser ? Speech::Cola : Speech::Plate;
 }
 
-std::unique_ptr<PlateFramer> FlowDecoder::plate_framer() const {
-  const auto bytes = key_.transport == Transport::Tcp ? PlateBytes::stream : PlateBytes::datagrams;
-  return std::make_unique<PlateFramer>(device_ == nullptr ? std::nullopt : device_->line, bytes);
+std::unique_ptr<wire::PlateFramer> FlowDecoder::plate_framer() const {
+  const auto bytes =
+      key_.transport == devices::Transport::Tcp ? wire::PlateBytes::stream : wire::PlateBytes::datagrams;
+  return std::make_unique<wire::PlateFramer>(device_ == nullptr ? std::nullopt : device_->line, bytes);
 }
 
 /// Whether to take the packet now. Where checksums are usually right, one with a wrong checksum is damaged,
 /// and the hub did not take it either; where they are usually wrong, some network card is to blame. The first
 /// wrong ones wait until it is clear which.
-bool FlowDecoder::trust(const TransportPacket& packet, std::int64_t time_ns) {
-  if (packet.checksum == ChecksumVerdict::Right) {
+bool FlowDecoder::trust(const devices::TransportPacket& packet, std::int64_t time_ns) {
+  if (packet.checksum == devices::ChecksumVerdict::Right) {
     ++right_checksums_;
     dropped_ += doubtful_.size();
     doubtful_.clear();
   }
-  if (packet.checksum != ChecksumVerdict::Wrong) return true;
+  if (packet.checksum != devices::ChecksumVerdict::Wrong) return true;
   ++wrong_checksums_;
   constexpr std::uint64_t kMaxDoubtful = 3, kFew = 40, kUsually = 20;
   if (right_checksums_ == 0 && wrong_checksums_ <= kMaxDoubtful) {
-    doubtful_.push_back({packet, Bytes(packet.payload.begin(), packet.payload.end()), time_ns});
+    doubtful_.push_back({packet, wire::Bytes(packet.payload.begin(), packet.payload.end()), time_ns});
     return false;
   }
   take_doubtful();
@@ -70,18 +72,18 @@ void FlowDecoder::take_doubtful() {
   }
 }
 
-void FlowDecoder::take(const TransportPacket& packet, std::int64_t time_ns) {
+void FlowDecoder::take(const devices::TransportPacket& packet, std::int64_t time_ns) {
   last_ns_ = time_ns;
   if (trust(packet, time_ns)) take_trusted(packet, time_ns);
 }
 
-void FlowDecoder::take_trusted(const TransportPacket& packet, std::int64_t time_ns) {
+void FlowDecoder::take_trusted(const devices::TransportPacket& packet, std::int64_t time_ns) {
   if (packet.missing > 0) ++cut_short_;
-  if (key_.transport == Transport::Tcp) {
+  if (key_.transport == devices::Transport::Tcp) {
     if (packet.syn && speech_ == Speech::Nothing) {  // a new connection may carry something else
       speech_ = Speech::Unknown;
       unconvincing_bytes_ = 0;
-      cola_ = std::make_unique<ColaFramer>();
+      cola_ = std::make_unique<wire::ColaFramer>();
       plate_ = plate_framer();
     }
     if (speech_ != Speech::Nothing) tcp_.take(packet, time_ns);
@@ -91,8 +93,8 @@ void FlowDecoder::take_trusted(const TransportPacket& packet, std::int64_t time_
   }
 }
 
-void FlowDecoder::data(ByteView bytes, std::int64_t arrival_ns) {
-  if (cola_) cola_->feed(bytes, arrival_ns, [&](const ColaFrame& frame) { take_frame(frame); });
+void FlowDecoder::data(wire::ByteView bytes, std::int64_t arrival_ns) {
+  if (cola_) cola_->feed(bytes, arrival_ns, [&](const wire::ColaFrame& frame) { take_frame(frame); });
   if (plate_) plate_->feed(bytes, arrival_ns, [&](const PlateReading& reading) { take_reading(reading); });
   if (speech_ != Speech::Unknown) {
     if (speech_ != Speech::Cola) cola_.reset();
@@ -108,13 +110,13 @@ void FlowDecoder::data(ByteView bytes, std::int64_t arrival_ns) {
 }
 
 void FlowDecoder::gap() {
-  if (cola_) cola_->gap([&](const ColaFrame& frame) { take_frame(frame); });
+  if (cola_) cola_->gap([&](const wire::ColaFrame& frame) { take_frame(frame); });
   if (plate_) plate_->gap([&](const PlateReading& reading) { take_reading(reading); });
 }
 
-void FlowDecoder::repeated(ByteView bytes) {
+void FlowDecoder::repeated(wire::ByteView bytes) {
   if (device_ == nullptr || speech_ != Speech::Cola) return;
-  ColaFramer().feed(bytes, 0, [&](const ColaFrame& frame) { device_->log.note_repeated(frame); });
+  wire::ColaFramer().feed(bytes, 0, [&](const wire::ColaFrame& frame) { device_->log.note_repeated(frame); });
 }
 
 /// Whether the flow speaks this language of a device that is known from now on.
@@ -127,16 +129,16 @@ bool FlowDecoder::settle(Speech speech) {
   return speech_ == speech;
 }
 
-void FlowDecoder::take_frame(const ColaFrame& frame) {
+void FlowDecoder::take_frame(const wire::ColaFrame& frame) {
   if (speech_ == Speech::Unknown && device_ == nullptr) {
-    const auto telegram = parse_cola(frame.payload, frame.language);
+    const auto telegram = wire::parse_cola(frame.payload, frame.language);
     if (!telegram) return;
     if (is_request(*telegram)) speech_ = Speech::Nothing;  // the hub's side of a conversation
   }
   if (!settle(Speech::Cola)) return;
   auto scan = device_->log.take(frame, settings_.encoder_widths);
   if (!scan || !is_of_rig()) return;
-  if (WiredEncoder* encoder = devices_.wired_encoder()) {
+  if (devices::WiredEncoder* encoder = devices_.wired_encoder()) {
     if (const auto reading = encoder->read(*scan, settings_.encoder_widths)) give_(*reading);
   }
   give_(std::move(scan));
@@ -175,8 +177,8 @@ void FlowDecoder::report() {
   log.note("retransmitted TCP segments", tcp.repeated_segments);
   log.note("TCP segments out of order", tcp.late_segments);
   log.note("TCP segments out of the window", tcp.out_of_window);
-  if (cola_) note_framing(cola_->counts(), log);
-  if (plate_) note_framing(plate_->counts(), log);
+  if (cola_) devices::note_framing(cola_->counts(), log);
+  if (plate_) devices::note_framing(plate_->counts(), log);
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

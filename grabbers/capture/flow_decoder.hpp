@@ -13,7 +13,7 @@
 #include "grabbers/devices/device_registry.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// One direction of one conversation between two ends: finds out what it carries, and hands telegrams and
 /// readings to the device that sent them.
@@ -23,10 +23,10 @@ class FlowDecoder final : public StreamSink {
 
   /// @param known the rig's device at the flow's beginning, or nullptr
   /// @param give  takes what a device of the rig measured
-  FlowDecoder(const FlowKey& key, DeviceRegistry& devices, DeviceRegistry::Device* known,
-              const CaptureSettings& settings, const Give& give);
+  FlowDecoder(const devices::FlowKey& key, devices::DeviceRegistry& devices,
+              devices::DeviceRegistry::Device* known, const CaptureSettings& settings, const Give& give);
 
-  void take(const TransportPacket& packet, std::int64_t time_ns);
+  void take(const devices::TransportPacket& packet, std::int64_t time_ns);
   void expire(std::int64_t now_ns);
   /// The capture ends, or the flow is forgotten: what is incomplete is lost, and the device learns all
   /// counts.
@@ -41,32 +41,32 @@ class FlowDecoder final : public StreamSink {
  private:
   enum class Speech : std::uint8_t { Unknown, Cola, Plate, Nothing };
 
-  void data(ByteView bytes, std::int64_t arrival_ns) override;
+  void data(wire::ByteView bytes, std::int64_t arrival_ns) override;
   void gap() override;
-  void repeated(ByteView bytes) override;
+  void repeated(wire::ByteView bytes) override;
 
-  std::unique_ptr<PlateFramer> plate_framer() const;
-  bool trust(const TransportPacket& packet, std::int64_t time_ns);
+  std::unique_ptr<wire::PlateFramer> plate_framer() const;
+  bool trust(const devices::TransportPacket& packet, std::int64_t time_ns);
   void take_doubtful();
-  void take_trusted(const TransportPacket& packet, std::int64_t time_ns);
-  void take_frame(const ColaFrame& frame);
+  void take_trusted(const devices::TransportPacket& packet, std::int64_t time_ns);
+  void take_frame(const wire::ColaFrame& frame);
   void take_reading(const PlateReading& reading);
   bool settle(Speech speech);
   void report();
 
-  FlowKey key_;
-  DeviceRegistry& devices_;
-  DeviceRegistry::Device* device_ = nullptr;
+  devices::FlowKey key_;
+  devices::DeviceRegistry& devices_;
+  devices::DeviceRegistry::Device* device_ = nullptr;
   CaptureSettings settings_;
   const Give& give_;
   Speech speech_ = Speech::Unknown;
   TcpStream tcp_;
-  std::unique_ptr<ColaFramer> cola_;
-  std::unique_ptr<PlateFramer> plate_;
+  std::unique_ptr<wire::ColaFramer> cola_;
+  std::unique_ptr<wire::PlateFramer> plate_;
   std::size_t unconvincing_bytes_ = 0;
   struct Doubtful {
-    TransportPacket packet;
-    Bytes payload;
+    devices::TransportPacket packet;
+    wire::Bytes payload;
     std::int64_t time_ns;
   };
   std::vector<Doubtful> doubtful_;  ///< with wrong checksums, before any right one came
@@ -74,4 +74,4 @@ class FlowDecoder final : public StreamSink {
   std::int64_t last_ns_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

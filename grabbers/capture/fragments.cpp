@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::size_t kMaxPackets = 64, kMaxPieces = 8192;  // 65535 bytes in pieces of 8
@@ -12,7 +12,8 @@ constexpr std::int64_t kLongest = 30'000'000'000;
 
 }  // namespace
 
-std::optional<IpPacket> FragmentAssembler::take(const IpPacket& fragment, std::int64_t time_ns) {
+std::optional<devices::IpPacket> FragmentAssembler::take(const devices::IpPacket& fragment,
+                                                         std::int64_t time_ns) {
   forget_old(time_ns);
   const auto end = fragment.fragment_offset + fragment.payload.size();
   if (fragment.missing > 0 || end > kLargestPayload) {
@@ -37,9 +38,9 @@ std::optional<IpPacket> FragmentAssembler::take(const IpPacket& fragment, std::i
   return packet;
 }
 
-std::optional<Bytes> FragmentAssembler::joined(const Partial& partial) {
+std::optional<wire::Bytes> FragmentAssembler::joined(const Partial& partial) {
   if (!partial.size) return {};
-  Bytes bytes;
+  wire::Bytes bytes;
   for (const auto& [offset, piece] : partial.pieces) {
     if (offset > bytes.size()) return {};
     const auto known = std::min(bytes.size() - offset, piece.size());
@@ -65,4 +66,4 @@ void FragmentAssembler::finish() {
   partials_.clear();
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

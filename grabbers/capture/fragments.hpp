@@ -10,7 +10,7 @@
 
 #include "grabbers/devices/network.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Reassembles IP packets from fragments in any order (RFC 791, RFC 8200). The first copy of bytes that came
 /// twice is kept. Bounded: at most 64 packets at a time, none for longer than 30 s.
@@ -20,7 +20,7 @@ class FragmentAssembler {
 
   /// @param fragment one whose is_fragment() is true
   /// @return the whole packet if this fragment completes it; its payload is valid until the next call
-  std::optional<IpPacket> take(const IpPacket& fragment, std::int64_t time_ns);
+  std::optional<devices::IpPacket> take(const devices::IpPacket& fragment, std::int64_t time_ns);
 
   /// The stream of packets ends: what is incomplete is lost.
   void finish();
@@ -29,7 +29,7 @@ class FragmentAssembler {
 
  private:
   struct Key {
-    IpAddress from, to;
+    devices::IpAddress from, to;
     std::uint32_t id;
     std::uint8_t protocol;
     bool operator<(const Key& other) const {
@@ -38,16 +38,16 @@ class FragmentAssembler {
   };
   struct Partial {
     std::int64_t begun_ns = 0;
-    std::map<std::uint32_t, Bytes> pieces;  ///< by their offset
-    std::optional<std::uint32_t> size;      ///< known from the last fragment
+    std::map<std::uint32_t, wire::Bytes> pieces;  ///< by their offset
+    std::optional<std::uint32_t> size;            ///< known from the last fragment
   };
 
   void forget_old(std::int64_t now_ns);
-  static std::optional<Bytes> joined(const Partial& partial);
+  static std::optional<wire::Bytes> joined(const Partial& partial);
 
   std::map<Key, Partial> partials_;
-  Bytes whole_;
+  wire::Bytes whole_;
   Counts losses_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -15,8 +15,10 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
+
+using wire::ByteView;
 
 bool is_ipv6(const Address& address) { return address.ip.find(':') != std::string::npos; }
 
@@ -50,7 +52,7 @@ void check(const Address& from, const Address& to) {
   }
 }
 
-Bytes frame(const Address& from, const Address& to, std::uint16_t id, const Tins::PDU& transport) {
+wire::Bytes frame(const Address& from, const Address& to, std::uint16_t id, const Tins::PDU& transport) {
   Tins::EthernetII ethernet(hardware_address(to), hardware_address(from));
   if (is_ipv6(from)) {
     Tins::IPv6 ip(to.ip, from.ip);
@@ -86,12 +88,12 @@ FrameOrigin origin_of(ByteView frame) {
   return is_marked(kSimulatedMark) ? FrameOrigin::Simulated : FrameOrigin::Foreign;
 }
 
-void mark_as_simulated(Bytes& frame) {
+void mark_as_simulated(wire::Bytes& frame) {
   for (const std::size_t hardware : {kTarget, kSource}) frame.at(hardware + 1) = kSimulatedMark;
 }
 
 void FrameSorter::push(std::int64_t time_ns, ByteView frame) {
-  held_.push(time_ns, Bytes(frame.begin(), frame.end()));
+  held_.push(time_ns, wire::Bytes(frame.begin(), frame.end()));
   const std::int64_t limit_ns = held_.last_ns() - hold_ns_ + 1;
   while (const auto due = held_.pop(limit_ns)) sink_(due->time_ns, due->item);
 }
@@ -157,4 +159,4 @@ void DatagramSender::send(ByteView bytes, std::int64_t time_ns) {
   sink_(time_ns, frame(from_, to_, ++packets_, udp));
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

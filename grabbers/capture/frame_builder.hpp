@@ -9,10 +9,10 @@
 #include "grabbers/capture/reorder_buffer.hpp"
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Receives one Ethernet frame with its capture time [ns since the Unix epoch].
-using FrameSink = std::function<void(std::int64_t, ByteView)>;
+using FrameSink = std::function<void(std::int64_t, wire::ByteView)>;
 
 /// Puts frames in the order of their times: holds each until a frame that is `hold_ns` younger has come.
 /// Frames of equal times keep their order.
@@ -20,13 +20,13 @@ class FrameSorter {
  public:
   /// @param hold_ns  > 0
   FrameSorter(FrameSink sink, std::int64_t hold_ns) : sink_(std::move(sink)), hold_ns_(hold_ns) {}
-  void push(std::int64_t time_ns, ByteView frame);
+  void push(std::int64_t time_ns, wire::ByteView frame);
   void finish();  ///< gives away all that is held
 
  private:
   FrameSink sink_;
   std::int64_t hold_ns_;
-  ReorderBuffer<Bytes> held_;
+  ReorderBuffer<wire::Bytes> held_;
 };
 
 /// The maker of a frame, identified by its hardware addresses.
@@ -36,10 +36,10 @@ enum class FrameOrigin : std::uint8_t {
   Foreign,    ///< a network card
 };
 
-FrameOrigin origin_of(ByteView frame);
+FrameOrigin origin_of(wire::ByteView frame);
 
 /// Sets a frame's hardware addresses to those of a simulated one.
-void mark_as_simulated(Bytes& frame);
+void mark_as_simulated(wire::Bytes& frame);
 
 /// Parameters of a TCP connection on the wire.
 struct TcpSettings {
@@ -63,7 +63,7 @@ class TcpConversation {
   void open(std::int64_t time_ns);
   /// Payload bytes in as many segments as they need; the last is captured at completed_ns, those before it
   /// earlier by what the wire needs, and the other side acknowledges them.
-  void send(TcpSide from, ByteView bytes, std::int64_t completed_ns);
+  void send(TcpSide from, wire::ByteView bytes, std::int64_t completed_ns);
   /// Both sides finish, the client first.
   void close(std::int64_t time_ns);
 
@@ -75,7 +75,7 @@ class TcpConversation {
   };
 
   Side& side(TcpSide which) { return which == TcpSide::Server ? server_ : client_; }
-  void segment(TcpSide from, int flags, ByteView payload, std::int64_t time_ns);
+  void segment(TcpSide from, int flags, wire::ByteView payload, std::int64_t time_ns);
 
   Side server_, client_;
   FrameSink sink_;
@@ -87,7 +87,7 @@ class DatagramSender {
  public:
   /// @throws Error as TcpConversation
   DatagramSender(Address from, Address to, FrameSink sink);
-  void send(ByteView bytes, std::int64_t time_ns);
+  void send(wire::ByteView bytes, std::int64_t time_ns);
 
  private:
   Address from_, to_;
@@ -95,4 +95,4 @@ class DatagramSender {
   std::uint16_t packets_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -10,7 +10,7 @@
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -56,19 +56,19 @@ void HubTrafficEncoder::connect(std::size_t laser, std::int64_t time_ns) {
   auto& connection = lasers_.at(laser);
   connection = std::make_unique<TcpConversation>(server, hub_for(server, port), sink_, begun_at(time_ns));
   connection->open(time_ns);
-  const std::vector<ColaValue> on{std::uint8_t{1}};
-  connection->send(TcpSide::Client, cola_message("sEN", kScanDataName, on, language_),
+  const std::vector<wire::ColaValue> on{std::uint8_t{1}};
+  connection->send(TcpSide::Client, wire::cola_message("sEN", wire::kScanDataName, on, language_),
                    time_ns + kMillisecond);
-  connection->send(TcpSide::Server, cola_message("sEA", kScanDataName, on, language_),
+  connection->send(TcpSide::Server, wire::cola_message("sEA", wire::kScanDataName, on, language_),
                    time_ns + 2 * kMillisecond);
 }
 
-void HubTrafficEncoder::telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns) {
+void HubTrafficEncoder::telegram(std::size_t laser, wire::ByteView bytes, std::int64_t time_ns) {
   lasers_.at(laser)->send(TcpSide::Server, bytes, time_ns);
 }
 
 void HubTrafficEncoder::reading(const PlateReading& reading) {
-  if (plate_) plate_->send(as_bytes(encode_plate_sentence(reading)), reading.receipt_ns);
+  if (plate_) plate_->send(wire::as_bytes(wire::encode_plate_sentence(reading)), reading.receipt_ns);
 }
 
 void HubTrafficEncoder::close(std::int64_t time_ns) {
@@ -77,4 +77,4 @@ void HubTrafficEncoder::close(std::int64_t time_ns) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

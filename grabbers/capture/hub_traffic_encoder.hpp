@@ -13,7 +13,7 @@
 #include "grabbers/capture/frame_builder.hpp"
 #include "grabbers/wire/cola.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Encodes the data of a rig's devices as frames on the hub's network interface: a TCP connection a
 /// laser, over which the hub has subscribed to scans, and the plate's datagrams.
@@ -25,7 +25,7 @@ class HubTrafficEncoder {
   /// Opens a laser's first connection, or a new one; its handshake and subscription end 2 ms after time_ns.
   void connect(std::size_t laser, std::int64_t time_ns);
   /// A framed telegram of a connected laser, complete at time_ns.
-  void telegram(std::size_t laser, ByteView bytes, std::int64_t time_ns);
+  void telegram(std::size_t laser, wire::ByteView bytes, std::int64_t time_ns);
   /// The plate's datagram of a reading; nothing where its encoder is wired to a laser, whose telegrams hold
   /// it.
   void reading(const PlateReading& reading);
@@ -41,4 +41,4 @@ class HubTrafficEncoder {
   std::optional<DatagramSender> plate_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

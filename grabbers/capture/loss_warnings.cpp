@@ -8,7 +8,7 @@
 #include "grabbers/capture/packet.hpp"
 #include "pipeline/data/counted.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr double kTolerable = 0.01;  // share of losses below which there is no warning
@@ -41,7 +41,7 @@ std::string unreadable(const DeviceStatistics& device, double above, double up_t
 std::string truncated_packets(const CaptureStatistics& statistics) {
   return fmt::format(
       "{} of {} are cut off by the recording's snap length, and what they carried is lost: record whole packets (tcpdump -s 0)",
-      statistics.truncated, counted(statistics.packets, "packet"));
+      statistics.truncated, data::counted(statistics.packets, "packet"));
 }
 
 std::vector<std::string> loss_warnings(const CaptureStatistics& statistics, const std::string& source) {
@@ -93,4 +93,4 @@ std::vector<std::string> address_conflicts(const CaptureStatistics& statistics) 
   return caveats;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

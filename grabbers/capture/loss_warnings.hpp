@@ -6,7 +6,7 @@
 
 #include <crisp/capture_statistics.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Warnings of a source's losses: each device of the rig of which more than one item in a hundred was lost or
 /// unreadable, and a file that is damaged to that degree or truncated, or whose packets are.
@@ -23,4 +23,4 @@ std::vector<std::string> lost_devices(const CaptureStatistics& statistics);
 /// units have one address, and their scans are no sequence. (A unit that was replaced once is none.)
 std::vector<std::string> address_conflicts(const CaptureStatistics& statistics);
 
-}  // namespace crisp
+}  // namespace crisp::capture

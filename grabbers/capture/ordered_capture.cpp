@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 bool is_regular(const std::filesystem::path& path) {
@@ -69,7 +69,7 @@ const Packet* OrderedCapture::next() {
   return &first->packet;
 }
 
-std::int64_t OrderedCapture::shift_of(const IpPacket& packet) const {
+std::int64_t OrderedCapture::shift_of(const devices::IpPacket& packet) const {
   const auto found = order_.shift_ns.find(pair_of(packet));
   return found == order_.shift_ns.end() ? 0 : found->second;
 }
@@ -92,4 +92,4 @@ std::uint64_t OrderedCapture::offset() const {
   return read;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

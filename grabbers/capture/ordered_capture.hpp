@@ -12,7 +12,7 @@
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/packet_order.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// The packets of a capture file as CaptureFile gives them, in the order in which they arrived: its stretches
 /// are merged by time, as survey_capture() finds them. A pipe is read as it is.
@@ -25,7 +25,7 @@ class OrderedCapture {
   /// The next packet, valid until the next call; nullptr at the end of the file.
   const Packet* next();
   /// [ns] What is to be added to the time of this packet.
-  std::int64_t shift_of(const IpPacket& packet) const;
+  std::int64_t shift_of(const devices::IpPacket& packet) const;
 
   const std::vector<std::string>& remarks() const { return order_.remarks; }
   Counts losses() const;
@@ -57,4 +57,4 @@ class OrderedCapture {
   std::uint64_t read_ = 0;            // [bytes] of those that are over
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -6,14 +6,14 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// One packet of a capture.
 struct Packet {
   std::int64_t time_ns = 0;         ///< [ns since the Unix epoch] capture time
   std::uint32_t link_type = 0;      ///< LINKTYPE_… of the interface
   std::uint32_t original_size = 0;  ///< [bytes] on the wire; more than there are if the capture cut it short
-  ByteView bytes;                   ///< valid until the next packet is read
+  wire::ByteView bytes;             ///< valid until the next packet is read
 };
 
 /// Names of what a capture file loses by itself.
@@ -34,4 +34,4 @@ inline constexpr std::string_view kNotCaptured =
 /// Longest plausible packet [bytes]; the largest snapshot length of tcpdump.
 inline constexpr std::uint32_t kLargestPacket = 262144;
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -10,7 +10,7 @@
 
 #include "grabbers/capture/dissect.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::size_t kMaxStretches = 1000;  // that are merged
@@ -79,7 +79,7 @@ class ConversationScan {
     while (const Packet* packet = file.next()) {
       if (watch.take(packet->time_ns)) ++stretch_;
       const auto ip = dissect_ip(*packet);
-      if (const auto* found = std::get_if<IpPacket>(&ip)) take(*found, packet->time_ns);
+      if (const auto* found = std::get_if<devices::IpPacket>(&ip)) take(*found, packet->time_ns);
     }
   }
 
@@ -114,7 +114,7 @@ class ConversationScan {
     std::size_t stretch = 0;
   };
 
-  void take(const IpPacket& ip, std::int64_t time_ns) {
+  void take(const devices::IpPacket& ip, std::int64_t time_ns) {
     constexpr std::size_t kMax = 32;
     const IpPair pair = pair_of(ip);
     if (conversations_.size() < kMax || conversations_.contains(pair)) {
@@ -125,7 +125,8 @@ class ConversationScan {
     }
     bool damaged = false;
     const auto packet = dissect_transport(ip, damaged);
-    if (packet && packet->key.transport == Transport::Tcp && !packet->payload.empty()) follow(*packet);
+    if (packet && packet->key.transport == devices::Transport::Tcp && !packet->payload.empty())
+      follow(*packet);
   }
 
   /// [ns] Of the conversations that are far from this one's time.
@@ -152,7 +153,7 @@ class ConversationScan {
     }
   }
 
-  void follow(const TransportPacket& packet) {
+  void follow(const devices::TransportPacket& packet) {
     constexpr std::int32_t kNear = 1 << 20;  // [bytes] that may be missing
     const auto [found, is_new] = flows_.try_emplace(packet.key);
     Connection& connection = found->second;
@@ -168,7 +169,7 @@ class ConversationScan {
   std::size_t stretch_ = 0;  // the present one, from 1
   std::map<IpPair, Conversation> conversations_;
   std::map<std::pair<IpPair, IpPair>, Offset> offsets_;
-  std::map<FlowKey, Connection> flows_;
+  std::map<devices::FlowKey, Connection> flows_;
   std::map<std::size_t, int> connections_;  // that go on after a stretch, less those that do not
 };
 
@@ -220,7 +221,7 @@ bool join_clocks(const ConversationScan& survey, PacketOrder& order) {
     order.shift_ns[pair] = -offset;
     order.remarks.push_back(fmt::format(
         "packets between {} and {} are stamped {:+.3f} s off their neighbours: the capture's interfaces have different clocks (TAI is 37 s ahead of UTC). The offset is removed, to within some milliseconds, which a calibration estimates as eta. Stamp all interfaces by one clock",
-        to_string(pair.first), to_string(pair.second), to_seconds(offset)));
+        devices::to_string(pair.first), devices::to_string(pair.second), to_seconds(offset)));
   }
   return !order.shift_ns.empty();
 }
@@ -250,4 +251,4 @@ PacketOrder determine_packet_order(const std::filesystem::path& path,
   return order;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

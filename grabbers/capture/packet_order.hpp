@@ -14,15 +14,15 @@
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/devices/network.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Packets of a capture are in order if none is earlier by more than this than one before it [ns]: captures
 /// of several interfaces are slightly out of order.
 inline constexpr std::int64_t kMaxReordering = 100'000'000;
 
 /// Two addresses that talk to each other, the lesser first. One interface of the hub sees both directions.
-using IpPair = std::pair<IpAddress, IpAddress>;
-inline IpPair pair_of(const IpPacket& packet) { return std::minmax(packet.from, packet.to); }
+using IpPair = std::pair<devices::IpAddress, devices::IpAddress>;
+inline IpPair pair_of(const devices::IpPacket& packet) { return std::minmax(packet.from, packet.to); }
 
 /// A part of a capture file whose packets are in order.
 struct OrderedSegment {
@@ -52,4 +52,4 @@ struct PacketOrder {
 PacketOrder determine_packet_order(const std::filesystem::path& path,
                                    const std::function<bool()>& interrupted = {});
 
-}  // namespace crisp
+}  // namespace crisp::capture

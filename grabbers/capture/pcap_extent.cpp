@@ -9,10 +9,10 @@
 
 #include "grabbers/capture/pcap_records.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
-bool is_nanosecond_ethernet(ByteView header) {
+bool is_nanosecond_ethernet(wire::ByteView header) {
   constexpr std::uint32_t kNanosecondMagic = 0xa1b23c4d, kEthernet = 1;
   constexpr auto kOrder = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
   return header.size() == kPcapFileHeader &&
@@ -42,4 +42,4 @@ PcapExtent pcap_extent(const std::filesystem::path& path) {
   return extent;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

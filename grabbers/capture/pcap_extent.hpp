@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Extent of the records of a pcap file, read past damaged ones.
 struct PcapExtent {
@@ -21,4 +21,4 @@ struct PcapExtent {
 /// @throws Error if the file cannot be read, or is no nanosecond Ethernet pcap of this machine's byte order
 PcapExtent pcap_extent(const std::filesystem::path& path);
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -5,7 +5,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86'400 * kSecond;
@@ -16,7 +16,7 @@ constexpr std::uint32_t kLargestOriginal = 1 << 24;
 
 }  // namespace
 
-bool PcapRecords::recognises(ByteView begin) {
+bool PcapRecords::recognises(wire::ByteView begin) {
   if (begin.size() < 4) return false;
   for (const auto order : {ByteOrder::Little, ByteOrder::Big}) {
     const auto magic = number_at<std::uint32_t>(begin, 0, order);
@@ -39,7 +39,7 @@ PcapRecords::PcapRecords(FileWindow& file, Counts& losses) : file_(file), losses
   file_.skip(kPcapFileHeader);
 }
 
-std::optional<PcapRecords::Header> PcapRecords::header(ByteView bytes) const {
+std::optional<PcapRecords::Header> PcapRecords::header(wire::ByteView bytes) const {
   const auto field = [&](std::size_t at) { return number_at<std::uint32_t>(bytes, at, order_); };
   const auto ticks = field(4) * ns_per_tick_;
   const Header found{field(0) * kSecond + ticks, field(8), field(12)};
@@ -49,7 +49,7 @@ std::optional<PcapRecords::Header> PcapRecords::header(ByteView bytes) const {
 }
 
 /// The header at `at`, if it is plausible for a packet less than a day away from near_ns.
-std::optional<PcapRecords::Header> PcapRecords::believable_header(ByteView bytes, std::size_t at,
+std::optional<PcapRecords::Header> PcapRecords::believable_header(wire::ByteView bytes, std::size_t at,
                                                                   std::optional<std::int64_t> near_ns) const {
   if (at + header_size_ > bytes.size()) return {};
   const auto found = header(bytes.subspan(at));
@@ -59,7 +59,7 @@ std::optional<PcapRecords::Header> PcapRecords::believable_header(ByteView bytes
 }
 
 /// The first place from which two records follow each other, near in time to the last good one.
-std::optional<std::size_t> PcapRecords::find_record(ByteView bytes, std::size_t from) const {
+std::optional<std::size_t> PcapRecords::find_record(wire::ByteView bytes, std::size_t from) const {
   for (std::size_t at = from; at + header_size_ <= bytes.size(); ++at) {
     const auto first = believable_header(bytes, at, last_time_ns_);
     if (!first) continue;
@@ -123,4 +123,4 @@ bool PcapRecords::next(Packet& packet) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

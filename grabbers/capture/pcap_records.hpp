@@ -9,7 +9,7 @@
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/packet.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 inline constexpr std::size_t kPcapFileHeader = 24;  ///< bytes, before the first record
 
@@ -18,7 +18,7 @@ inline constexpr std::size_t kPcapFileHeader = 24;  ///< bytes, before the first
 class PcapRecords {
  public:
   /// Whether the file begins like a pcap file.
-  static bool recognises(ByteView begin);
+  static bool recognises(wire::ByteView begin);
 
   /// @throws Error if the file's header is cut off
   PcapRecords(FileWindow& file, Counts& losses);
@@ -31,10 +31,10 @@ class PcapRecords {
     std::uint32_t captured = 0, original = 0;
   };
 
-  std::optional<Header> header(ByteView bytes) const;
-  std::optional<Header> believable_header(ByteView bytes, std::size_t at,
+  std::optional<Header> header(wire::ByteView bytes) const;
+  std::optional<Header> believable_header(wire::ByteView bytes, std::size_t at,
                                           std::optional<std::int64_t> near_ns) const;
-  std::optional<std::size_t> find_record(ByteView bytes, std::size_t from) const;
+  std::optional<std::size_t> find_record(wire::ByteView bytes, std::size_t from) const;
   bool resynchronise(std::size_t from);
   bool cut_off(std::size_t rest);
 
@@ -47,4 +47,4 @@ class PcapRecords {
   std::optional<std::int64_t> last_time_ns_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

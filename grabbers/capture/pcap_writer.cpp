@@ -20,7 +20,7 @@
 #include "grabbers/capture/pcap_records.hpp"
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::uint64_t kRecordHeader = 16;
@@ -147,7 +147,7 @@ PcapWriter& PcapWriter::operator=(PcapWriter&&) noexcept = default;
 
 std::uint64_t PcapWriter::bytes() const { return file_->length; }
 
-void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
+void PcapWriter::write(std::int64_t time_ns, wire::ByteView frame) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   if (frame.size() > kSnapshot || time_ns < 0 || time_ns / kSecond > 0xFFFFFFFFLL) {
     throw Error(
@@ -155,7 +155,7 @@ void PcapWriter::write(std::int64_t time_ns, ByteView frame) {
         "frames have at most 262144 bytes and times lie between 1970 and 2106");
   }
   auto& f = *file_;
-  if (!f.dump) throw internal_error("a closed capture cannot be written to");
+  if (!f.dump) throw data::internal_error("a closed capture cannot be written to");
   pcap_pkthdr header{};
   header.ts.tv_sec = time_ns / kSecond;
   header.ts.tv_usec = time_ns % kSecond;  // nanoseconds, by the file's precision
@@ -181,4 +181,4 @@ void PcapWriter::close() {
   if (f.replaced) f.replaced->commit();
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -7,7 +7,7 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Treatment of the file under its name while it is being written.
 enum class PcapMode : std::uint8_t {
@@ -31,7 +31,7 @@ class PcapWriter {
   /// Appends one record.
   /// @param time_ns [ns since the Unix epoch] 0 … 2106-02-07
   /// @throws Error if the disk is full; the file then ends with the last whole record
-  void write(std::int64_t time_ns, ByteView frame);
+  void write(std::int64_t time_ns, wire::ByteView frame);
 
   /// Puts everything on the disk. @throws Error as write()
   void flush();
@@ -46,4 +46,4 @@ class PcapWriter {
   std::unique_ptr<File> file_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
+
+using wire::ByteView;
 
 constexpr std::uint32_t kSection = 0x0A0D0D0A, kInterface = 1, kObsoletePacket = 2, kSimplePacket = 3;
 constexpr std::uint32_t kStatistics = 5, kPacket = 6;
@@ -231,4 +233,4 @@ std::optional<std::int64_t> PcapngBlocks::to_ns(std::uint64_t ticks, const Inter
   return total * static_cast<std::int64_t>(kSecond) + static_cast<std::int64_t>(ns);
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

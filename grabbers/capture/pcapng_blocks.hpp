@@ -10,7 +10,7 @@
 #include "grabbers/capture/file_window.hpp"
 #include "grabbers/capture/packet.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// The blocks of a pcapng file (draft-ietf-opsawg-pcapng): any number of sections and interfaces, each with
 /// its byte order, link type, time resolution and offset. Not libpcap, because that refuses interfaces of
@@ -19,7 +19,7 @@ namespace crisp {
 class PcapngBlocks {
  public:
   /// Whether the file begins like a pcapng file.
-  static bool recognises(ByteView begin);
+  static bool recognises(wire::ByteView begin);
 
   PcapngBlocks(FileWindow& file, Counts& losses) : file_(file), losses_(losses) {}
 
@@ -43,20 +43,20 @@ class PcapngBlocks {
   }
 
  private:
-  std::uint32_t u32(ByteView bytes, std::size_t at) const {
+  std::uint32_t u32(wire::ByteView bytes, std::size_t at) const {
     return number_at<std::uint32_t>(bytes, at, order_);
   }
-  std::optional<std::size_t> block_size(ByteView begin) const;
-  bool is_block(ByteView bytes, std::size_t at) const;
-  bool holds_a_block(ByteView bytes) const;
-  std::optional<ByteView> next_block();  // whole; nothing at the end of the file
-  bool enter_section(ByteView begin);
+  std::optional<std::size_t> block_size(wire::ByteView begin) const;
+  bool is_block(wire::ByteView bytes, std::size_t at) const;
+  bool holds_a_block(wire::ByteView bytes) const;
+  std::optional<wire::ByteView> next_block();  // whole; nothing at the end of the file
+  bool enter_section(wire::ByteView begin);
   bool resynchronise();
-  bool read_packet(std::uint32_t type, ByteView body, Packet& packet);
-  void describe_interface(ByteView body);
-  void read_statistics(ByteView body);
+  bool read_packet(std::uint32_t type, wire::ByteView body, Packet& packet);
+  void describe_interface(wire::ByteView body);
+  void read_statistics(wire::ByteView body);
   template <class Take>
-  void options(ByteView bytes, Take take) const;
+  void options(wire::ByteView bytes, Take take) const;
   static std::optional<std::int64_t> to_ns(std::uint64_t ticks, const Interface& interface);
 
   FileWindow& file_;
@@ -65,4 +65,4 @@ class PcapngBlocks {
   std::vector<Interface> interfaces_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::size_t kBatch = 256;  // items
@@ -94,4 +94,4 @@ ReadBatch ReadAhead::next() {
   return batch;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

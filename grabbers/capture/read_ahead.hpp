@@ -11,7 +11,7 @@
 
 #include <crisp/capture_reader.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Some hundred items of a capture, one after the other.
 struct ReadBatch {
@@ -54,4 +54,4 @@ class ReadAhead {
   std::thread thread_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

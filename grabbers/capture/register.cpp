@@ -4,11 +4,11 @@
 #include "grabbers/capture/capture_inspector.hpp"
 #include "grabbers/capture/capture_stage.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 void register_capture(Registrar& registrar) {
   registrar.stage<CaptureStage>();
   registrar.inspector(capture_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

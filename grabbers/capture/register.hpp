@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Registers grabber.capture, and the inspector of captures for `crisp info`.
 void register_capture(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Reorder buffer: holds items that come slightly out of order, and gives them in the order of their times.
 /// Items of equal times keep their order.
@@ -46,4 +46,4 @@ class ReorderBuffer {
   std::deque<Timed> items_;  ///< ascending in time
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <iterator>
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 constexpr std::int64_t kWindow = 1 << 20;  // [bytes] largest plausible distance of a segment from its stream
@@ -14,7 +14,7 @@ constexpr std::size_t kMaxHeld = 4 << 20, kMaxSegments = 4096;
 
 }  // namespace
 
-void TcpStream::take(const TransportPacket& segment, std::int64_t time_ns) {
+void TcpStream::take(const devices::TransportPacket& segment, std::int64_t time_ns) {
   expire(time_ns);
   const auto sequence = segment.sequence + (segment.syn ? 1 : 0);
   if (segment.syn && !is_handshake_again(sequence, time_ns)) begin(sequence, time_ns);
@@ -47,7 +47,8 @@ void TcpStream::begin(std::uint32_t sequence, std::int64_t time_ns) {
   ++counts_.connections;
 }
 
-void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t missing, std::int64_t time_ns) {
+void TcpStream::place(std::uint32_t sequence, wire::ByteView bytes, std::uint32_t missing,
+                      std::int64_t time_ns) {
   const auto expected = static_cast<std::uint32_t>(first_ + position_);
   const std::int64_t distance = static_cast<std::int32_t>(sequence - expected);
   if (std::abs(distance) > kWindow) {
@@ -87,13 +88,13 @@ void TcpStream::place(std::uint32_t sequence, ByteView bytes, std::uint32_t miss
   }
 }
 
-void TcpStream::deliver(ByteView bytes, std::int64_t arrival_ns) {
+void TcpStream::deliver(wire::ByteView bytes, std::int64_t arrival_ns) {
   position_ += bytes.size();
   if (!bytes.empty()) sink_.data(bytes, arrival_ns);
 }
 
 /// Keeps those of the bytes that are not held already.
-void TcpStream::hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns) {
+void TcpStream::hold(std::uint64_t offset, wire::ByteView bytes, std::int64_t time_ns) {
   while (!bytes.empty()) {
     const auto next = held_.upper_bound(offset);
     const auto end_before =
@@ -105,7 +106,7 @@ void TcpStream::hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns)
       if (next != held_.end()) size = std::min<std::uint64_t>(size, next->first - offset);
       held_.emplace_hint(
           next, offset,
-          Held{Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)), time_ns});
+          Held{wire::Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)), time_ns});
       held_bytes_ += size;
     }
     offset += size;
@@ -120,7 +121,7 @@ void TcpStream::release() {
     const auto& held = node.mapped();
     held_bytes_ -= held.bytes.size();
     const auto known = std::min<std::uint64_t>(position_ - node.key(), held.bytes.size());
-    deliver(ByteView(held.bytes).subspan(known), held.arrival_ns);
+    deliver(wire::ByteView(held.bytes).subspan(known), held.arrival_ns);
   }
 }
 
@@ -166,7 +167,7 @@ std::optional<std::int64_t> TcpStream::oldest_waiting() const {
 
 /// Whether the stream continues from the out-of-window segment held before, which this one follows: a new
 /// connection.
-bool TcpStream::continues_held_segment(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns) {
+bool TcpStream::continues_held_segment(std::uint32_t sequence, wire::ByteView bytes, std::int64_t time_ns) {
   const bool continues = held_segment_ && sequence == static_cast<std::uint32_t>(held_segment_->sequence +
                                                                                  held_segment_->bytes.size());
   if (continues) {
@@ -177,8 +178,8 @@ bool TcpStream::continues_held_segment(std::uint32_t sequence, ByteView bytes, s
     return true;
   }
   drop_held_segment();
-  held_segment_ = HeldSegment{sequence, Bytes(bytes.begin(), bytes.end()), time_ns};
+  held_segment_ = HeldSegment{sequence, wire::Bytes(bytes.begin(), bytes.end()), time_ns};
   return false;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -7,18 +7,18 @@
 
 #include "grabbers/devices/network.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 
 /// Receives the bytes of a TCP stream, in the order of sending.
 class StreamSink {
  public:
   virtual ~StreamSink() = default;
   /// The next bytes. @param arrival_ns [ns] capture time of the packet that first brought them
-  virtual void data(ByteView bytes, std::int64_t arrival_ns) = 0;
+  virtual void data(wire::ByteView bytes, std::int64_t arrival_ns) = 0;
   /// Bytes are missing here, or a new connection begins.
   virtual void gap() = 0;
   /// A segment whose bytes were all there before.
-  virtual void repeated(ByteView bytes) = 0;
+  virtual void repeated(wire::ByteView bytes) = 0;
 };
 
 /// One direction of a TCP connection, reassembled: segments may come in any order, twice, overlapping, or not
@@ -41,7 +41,7 @@ class TcpStream {
 
   TcpStream(StreamSink& sink, std::int64_t max_wait_ns) : sink_(sink), max_wait_ns_(max_wait_ns) {}
 
-  void take(const TransportPacket& segment, std::int64_t time_ns);
+  void take(const devices::TransportPacket& segment, std::int64_t time_ns);
   /// Gives up holes that have timed out.
   void expire(std::int64_t now_ns);
   /// The capture ends: gives what waits behind holes.
@@ -57,22 +57,22 @@ class TcpStream {
 
  private:
   struct Held {
-    Bytes bytes;
+    wire::Bytes bytes;
     std::int64_t arrival_ns = 0;
   };
 
   bool is_handshake_again(std::uint32_t sequence, std::int64_t time_ns) const;
   void begin(std::uint32_t sequence, std::int64_t time_ns);
-  void place(std::uint32_t sequence, ByteView bytes, std::uint32_t missing, std::int64_t time_ns);
-  void deliver(ByteView bytes, std::int64_t arrival_ns);
-  void hold(std::uint64_t offset, ByteView bytes, std::int64_t time_ns);
+  void place(std::uint32_t sequence, wire::ByteView bytes, std::uint32_t missing, std::int64_t time_ns);
+  void deliver(wire::ByteView bytes, std::int64_t arrival_ns);
+  void hold(std::uint64_t offset, wire::ByteView bytes, std::int64_t time_ns);
   void release();
   void skip_hole();
   void drop_held_segment();
   std::optional<std::int64_t> oldest_held() const;
   std::optional<std::int64_t> oldest_waiting() const;
   void jump_to(std::uint64_t offset);
-  bool continues_held_segment(std::uint32_t sequence, ByteView bytes, std::int64_t time_ns);
+  bool continues_held_segment(std::uint32_t sequence, wire::ByteView bytes, std::int64_t time_ns);
 
   StreamSink& sink_;
   std::int64_t max_wait_ns_;
@@ -85,11 +85,11 @@ class TcpStream {
   std::size_t held_bytes_ = 0;
   struct HeldSegment {  ///< a segment that may begin a new connection
     std::uint32_t sequence;
-    Bytes bytes;
+    wire::Bytes bytes;
     std::int64_t arrival_ns;
   };
   std::optional<HeldSegment> held_segment_;
   Counts counts_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::capture

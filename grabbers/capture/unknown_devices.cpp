@@ -9,7 +9,7 @@
 
 #include "grabbers/capture/capture_report.hpp"
 
-namespace crisp {
+namespace crisp::capture {
 namespace {
 
 /// The titles of the devices that the rig does not have, each once, in the order of the captures.
@@ -51,4 +51,4 @@ std::vector<std::string> caveats_of_addresses(const std::vector<CaptureStatistic
   return caveats;
 }
 
-}  // namespace crisp
+}  // namespace crisp::capture

@@ -22,7 +22,12 @@ int DeviceStatistics::period_hint() const {
   return median_handover && period && *median_handover < kSweep * *period ? -1 : 0;
 }
 
-DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser, Pauses* pauses)
+}  // namespace crisp
+
+namespace crisp::devices {
+
+DeviceLog::DeviceLog(DeviceKind kind, std::string name, Address address, std::uint16_t laser,
+                     clocks::Pauses* pauses)
     : laser_(laser), timeline_(pauses) {
   statistics_.kind = kind;
   statistics_.name = std::move(name);
@@ -50,20 +55,20 @@ bool DeviceLog::is_new(const DeviceTimeline::Item& item) {
   return arrival.is_new;
 }
 
-std::shared_ptr<const Scan> DeviceLog::take(const ColaFrame& frame, EncoderWidths widths) {
-  const auto telegram = parse_cola(frame.payload, frame.language);
+std::shared_ptr<const Scan> DeviceLog::take(const wire::ColaFrame& frame, EncoderWidths widths) {
+  const auto telegram = wire::parse_cola(frame.payload, frame.language);
   if (!telegram) {
     lose("telegrams of an unknown kind");
     return {};
   }
-  if (const auto code = cola_error_code(*telegram)) {
-    count_telegram(fmt::format("sFA {} ({})", *code, cola_error_text(*code)));
+  if (const auto code = wire::cola_error_code(*telegram)) {
+    count_telegram(fmt::format("sFA {} ({})", *code, wire::cola_error_text(*code)));
   } else {
     kind_.assign(telegram->command).append(1, ' ').append(telegram->name);
     count_telegram(kind_);
   }
   const bool scan =
-      telegram->name == kScanDataName && (telegram->command == "sSN" || telegram->command == "sRA");
+      telegram->name == wire::kScanDataName && (telegram->command == "sSN" || telegram->command == "sRA");
   return scan ? take_scan(*telegram, frame.completed_ns, widths) : nullptr;
 }
 
@@ -72,11 +77,11 @@ void DeviceLog::lose_scan(std::string_view why) {
   ++statistics_.unreadable;
 }
 
-std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, std::int64_t time_ns,
+std::shared_ptr<const Scan> DeviceLog::take_scan(const wire::ColaTelegram& telegram, std::int64_t time_ns,
                                                  EncoderWidths widths) {
-  const auto failure = decode_scan_data(telegram, widths, data_);
-  if (failure != FieldFailure::None) {
-    lose_scan(fmt::format("unreadable scan telegrams: {}", to_string(failure)));
+  const auto failure = wire::decode_scan_data(telegram, widths, data_);
+  if (failure != wire::FieldFailure::None) {
+    lose_scan(fmt::format("unreadable scan telegrams: {}", wire::to_string(failure)));
     return {};
   }
   if (data_.appended > 0) note("scan telegrams with unknown fields at their end");
@@ -88,13 +93,13 @@ std::shared_ptr<const Scan> DeviceLog::take_scan(const ColaTelegram& telegram, s
     return {};
   }
   auto scan = scans_.get();
-  const auto refusal = to_scan(data_, laser_, time_ns, *scan);
-  if (refusal != ScanFailure::None) {
-    lose_scan(fmt::format("scan telegrams that hold no scan: {}", to_string(refusal)));
+  const auto refusal = wire::to_scan(data_, laser_, time_ns, *scan);
+  if (refusal != wire::ScanFailure::None) {
+    lose_scan(fmt::format("scan telegrams that hold no scan: {}", wire::to_string(refusal)));
     return {};
   }
   const bool polled = telegram.command == "sRA";
-  const DeviceStamp stamp{.receipt_ns = time_ns, .device_us = scan->transmission_time_us};
+  const clocks::DeviceStamp stamp{.receipt_ns = time_ns, .device_us = scan->transmission_time_us};
   if (!is_new({.counter = scan->telegram_counter, .stamp = stamp, .is_polled = polled})) return {};
   if (polled) scan->numbered = false;
   timeline_.pass_on(stamp);
@@ -134,19 +139,19 @@ void DeviceLog::note_count(std::uint32_t count) {
 std::optional<PlateReading> DeviceLog::take(const PlateReading& reading, std::string_view kind) {
   if (kind.empty()) kind = reading.numbered ? "PPLT" : "lines of an encoder";
   count_telegram(kind);
-  const DeviceStamp stamp{.receipt_ns = reading.receipt_ns, .device_us = reading.device_us};
+  const clocks::DeviceStamp stamp{.receipt_ns = reading.receipt_ns, .device_us = reading.device_us};
   if (!is_new({.counter = reading.sequence, .stamp = stamp, .is_polled = !reading.numbered})) return {};
   timeline_.pass_on(stamp);
   note_count(reading.count);
   return reading;
 }
 
-void DeviceLog::note_repeated(const ColaFrame& frame) {
-  const auto telegram = parse_cola(frame.payload, frame.language);
+void DeviceLog::note_repeated(const wire::ColaFrame& frame) {
+  const auto telegram = wire::parse_cola(frame.payload, frame.language);
   if (!telegram) return;
-  note(telegram->name == kScanDataName && telegram->command == "sSN"
+  note(telegram->name == wire::kScanDataName && telegram->command == "sSN"
            ? "scans retransmitted by TCP"
            : "other telegrams retransmitted by TCP");
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -8,7 +8,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::devices {
 namespace {
 
 /// Silences before a device's first item and after its last one, while others were heard.
@@ -102,4 +102,4 @@ std::vector<DeviceStatistics> DeviceRegistry::statistics() const {
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -10,7 +10,7 @@
 #include "grabbers/devices/network.hpp"
 #include "grabbers/devices/wired_encoder.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 /// Ports of SICK's devices.
 bool is_sick_port(std::uint16_t port);
@@ -44,15 +44,15 @@ class DeviceRegistry {
   WiredEncoder* wired_encoder() { return wired_encoder_.get(); }
 
   std::vector<DeviceStatistics> statistics() const;
-  const Pauses& pauses() const { return *pauses_; }
+  const clocks::Pauses& pauses() const { return *pauses_; }
 
  private:
   void add(DeviceKind kind, const std::string& name, const Address& address, std::uint16_t index);
 
-  std::unique_ptr<Pauses> pauses_ = std::make_unique<Pauses>();
+  std::unique_ptr<clocks::Pauses> pauses_ = std::make_unique<clocks::Pauses>();
   std::vector<std::unique_ptr<Device>> known_;
   std::unique_ptr<WiredEncoder> wired_encoder_;
   std::map<std::pair<Endpoint, DeviceKind>, std::unique_ptr<Device>> others_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -6,7 +6,7 @@
 
 #include "pipeline/clocks/silence.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 namespace {
 
 constexpr const char* kReceiptJumps =
@@ -43,7 +43,7 @@ DeviceTimeline::Arrival DeviceTimeline::judge(const Item& item) {
   return {.is_new = is_new, .begins_anew = is_reset || is_recording};
 }
 
-void DeviceTimeline::pass_on(const DeviceStamp& stamp) {
+void DeviceTimeline::pass_on(const clocks::DeviceStamp& stamp) {
   const std::int64_t time_ns = stamp.receipt_ns;
   const std::uint32_t since_us = stamp.device_us - last_.device_us;  // wraps as they do
   const double receipt_s = 1e-9 * static_cast<double>(time_ns - last_.receipt_ns);
@@ -55,9 +55,9 @@ void DeviceTimeline::pass_on(const DeviceStamp& stamp) {
   }
   if (since_us == 0) ++standing_;
   const double hub_s = 1e-9 * static_cast<double>(time_ns - last_ns_);
-  if (!is_other_clock && is_receipt_jump(receipt_s, 1e-6 * static_cast<std::int32_t>(since_us)))
+  if (!is_other_clock && clocks::is_receipt_jump(receipt_s, 1e-6 * static_cast<std::int32_t>(since_us)))
     notes_.add(kReceiptJumps);
-  const double silence = silence_between(hub_s, 1e-6 * static_cast<double>(since_us));
+  const double silence = clocks::silence_between(hub_s, 1e-6 * static_cast<double>(since_us));
   if (silence > longest_silence_) {
     longest_silence_ = silence;
     silence_ns_ = last_ns_;
@@ -84,4 +84,4 @@ void DeviceTimeline::add_to(DeviceStatistics& statistics, std::string_view lost)
   statistics.skew = clock_.skew();
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

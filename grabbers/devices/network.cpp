@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstring>
 
-namespace crisp {
+namespace crisp::devices {
 namespace {
 
 constexpr std::array<std::uint8_t, 12> kMapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};
@@ -36,7 +36,7 @@ std::string to_string(const IpAddress& ip) {
 
 Address to_address(const Endpoint& endpoint) { return {to_string(endpoint.ip), endpoint.port}; }
 
-std::uint32_t internet_sum(ByteView bytes, std::uint32_t sum) {
+std::uint32_t internet_sum(wire::ByteView bytes, std::uint32_t sum) {
   // Words are added in this machine's order, which only swaps the bytes of the sum (RFC 1071, section 2B).
   std::uint64_t wide = 0;
   std::size_t i = 0;
@@ -56,9 +56,10 @@ std::uint32_t internet_sum(ByteView bytes, std::uint32_t sum) {
   return folded;
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices
 
-std::size_t std::hash<crisp::FlowKey>::operator()(const crisp::FlowKey& key) const noexcept {
+std::size_t std::hash<crisp::devices::FlowKey>::operator()(
+    const crisp::devices::FlowKey& key) const noexcept {
   // Addresses of one network differ in few bits; each step spreads those of a word over all that follow.
   std::uint64_t mixed = 0;
   const auto mix = [&](std::uint64_t value) {

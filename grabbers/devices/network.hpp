@@ -12,7 +12,7 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 /// An IPv6 address, or an IPv4 one in its IPv6 form (::ffff:a.b.c.d).
 using IpAddress = std::array<std::uint8_t, 16>;
@@ -45,7 +45,7 @@ struct FlowKey {
 };
 
 /// RFC 1071's sum over 16-bit words, not yet inverted. @param sum of what came before
-std::uint32_t internet_sum(ByteView bytes, std::uint32_t sum = 0);
+std::uint32_t internet_sum(wire::ByteView bytes, std::uint32_t sum = 0);
 
 /// Result of checking a transport header's checksum.
 enum class ChecksumVerdict : std::uint8_t {
@@ -58,7 +58,7 @@ enum class ChecksumVerdict : std::uint8_t {
 struct IpPacket {
   IpAddress from{}, to{};
   std::uint8_t protocol = 0;
-  ByteView payload;           ///< behind the IP headers
+  wire::ByteView payload;     ///< behind the IP headers
   std::uint32_t missing = 0;  ///< [bytes] of the payload that the capture cut off
   bool more_fragments = false;
   std::uint32_t fragment_offset = 0;  ///< [bytes]
@@ -71,14 +71,14 @@ struct TransportPacket {
   FlowKey key;
   std::uint32_t sequence = 0;                    ///< TCP
   bool syn = false, fin = false, reset = false;  ///< TCP
-  ByteView payload;
+  wire::ByteView payload;
   std::uint32_t missing = 0;  ///< [bytes] of the payload that the capture cut off
   ChecksumVerdict checksum = ChecksumVerdict::Unknown;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices
 
 template <>
-struct std::hash<crisp::FlowKey> {
-  std::size_t operator()(const crisp::FlowKey& key) const noexcept;
+struct std::hash<crisp::devices::FlowKey> {
+  std::size_t operator()(const crisp::devices::FlowKey& key) const noexcept;
 };

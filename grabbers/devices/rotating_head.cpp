@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace crisp {
+namespace crisp::devices {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -69,4 +69,4 @@ std::optional<HeadPiece> RotatingHead::take_piece() {
 
 HeadPiece RotatingHead::take_rest() { return take_until(std::numeric_limits<double>::infinity()); }
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -9,7 +9,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::devices {
 
 /// Beams of a rotating head and the trajectory that covers them.
 struct HeadPiece {
@@ -65,4 +65,4 @@ class RotatingHead {
   std::vector<Measurements> beams_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::devices {
 
-void RoughClock::begin(const DeviceStamp& stamp) {
+void RoughClock::begin(const clocks::DeviceStamp& stamp) {
   begun_ = true;
   last_ = stamp;
   first_ns_ = stamp.receipt_ns;
@@ -14,13 +14,13 @@ void RoughClock::begin(const DeviceStamp& stamp) {
   lowest_.assign(1, {});
 }
 
-bool RoughClock::take(const DeviceStamp& stamp) {
+bool RoughClock::take(const clocks::DeviceStamp& stamp) {
   if (!begun_) {
     begin(stamp);
     return false;
   }
   constexpr double kBack = 0.5, kAhead = 60;  // [s]
-  const auto [hub_s, device_us] = elapsed(last_, stamp);
+  const auto [hub_s, device_us] = clocks::elapsed(last_, stamp);
   const double device_s = 1e-6 * static_cast<double>(device_us);
   if (device_s < -kBack || device_s - hub_s > kAhead) {
     begin(stamp);
@@ -33,9 +33,9 @@ bool RoughClock::take(const DeviceStamp& stamp) {
   return false;
 }
 
-void RoughClock::keep(const Stamp& stamp) {
+void RoughClock::keep(const clocks::Stamp& stamp) {
   constexpr std::size_t kMax = 1024;
-  const auto bin = [this](const Stamp& s) { return std::floor(s.device / width_); };
+  const auto bin = [this](const clocks::Stamp& s) { return std::floor(s.device / width_); };
   auto& last = lowest_.back();
   if (bin(stamp) <= bin(last)) {
     if (stamp.lead < last.lead && stamp.device >= last.device) last = stamp;
@@ -44,7 +44,7 @@ void RoughClock::keep(const Stamp& stamp) {
   lowest_.push_back(stamp);
   if (lowest_.size() < kMax) return;
   width_ *= 2;
-  std::vector<Stamp> coarser;
+  std::vector<clocks::Stamp> coarser;
   for (const auto& s : lowest_) {
     if (coarser.empty() || bin(s) > bin(coarser.back())) {
       coarser.push_back(s);
@@ -58,7 +58,7 @@ void RoughClock::keep(const Stamp& stamp) {
 std::optional<double> RoughClock::skew() const {
   constexpr double kShortest = 10;
   if (lowest_.empty() || lowest_.back().device < kShortest) return {};
-  return hull_slope(lowest_, lowest_.back().device / 2);
+  return clocks::hull_slope(lowest_, lowest_.back().device / 2);
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

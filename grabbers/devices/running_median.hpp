@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 /// The median of any number of values in constant memory: exact up to 4096 values, from then on of every
 /// second, fourth … of them.
@@ -27,7 +27,7 @@ class RunningMedian {
   std::optional<double> value() const {
     if (values_.empty()) return {};
     auto sorted = values_;
-    return median_in_place(sorted);
+    return statistics::median_in_place(sorted);
   }
 
  private:
@@ -37,4 +37,4 @@ class RunningMedian {
   std::size_t count_ = 0, stride_ = 1;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices

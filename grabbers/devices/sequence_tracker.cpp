@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/devices/sequence_tracker.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 std::int64_t SequenceTracker::steps_to(std::uint16_t counter, std::int64_t time_ns) const {
   const double expected =
@@ -48,4 +48,4 @@ SequenceTracker::Verdict SequenceTracker::take(std::uint16_t counter, std::uint3
   return Verdict::Next;
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -6,7 +6,7 @@
 
 #include "pipeline/clocks/unwrap.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 /// Watches a counter that wraps at 65536: what was lost, came twice or came late. A silence longer than a
 /// wrap is counted right with the help of the time that it took and the usual interval.
@@ -31,7 +31,7 @@ class SequenceTracker {
   Verdict begin(std::uint16_t counter, std::uint32_t stamp, std::int64_t time_ns);
 
   bool begun_ = false;
-  CounterUnwrapper last_;
+  clocks::CounterUnwrapper last_;
   std::int64_t last_ns_ = 0;
   double elapsed_ns_ = 0, steps_ = 0;  ///< of the last items: their ratio is the time from one to the next
   std::uint64_t seen_ = 0;             ///< bit k: counter last − k has come
@@ -39,4 +39,4 @@ class SequenceTracker {
   std::uint64_t lost_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices

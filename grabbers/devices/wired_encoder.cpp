@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/devices/wired_encoder.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
-WiredEncoder::WiredEncoder(const Rig& rig, Pauses* pauses)
+WiredEncoder::WiredEncoder(const Rig& rig, clocks::Pauses* pauses)
     : laser_(rig.plate.encoder_of.value()),
       log_(DeviceKind::Plate, rig.plate.name, rig.lasers.at(laser_).address, 0, pauses) {}
 
@@ -28,4 +28,4 @@ std::optional<PlateReading> WiredEncoder::read(const Scan& scan, EncoderWidths w
                    "encoder of a laser");
 }
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -8,7 +8,7 @@
 
 #include "grabbers/devices/device_log.hpp"
 
-namespace crisp {
+namespace crisp::devices {
 
 /// The plate's encoder where it is wired to a laser, whose telegrams carry its count: a reading for each of
 /// that laser's scans, of the moment of the scan's stamp, on the laser's clock.
@@ -16,7 +16,7 @@ class WiredEncoder {
  public:
   /// @param rig     with a plate of `encoder_of`
   /// @param pauses  as of DeviceLog
-  explicit WiredEncoder(const Rig& rig, Pauses* pauses = nullptr);
+  explicit WiredEncoder(const Rig& rig, clocks::Pauses* pauses = nullptr);
 
   /// The reading in a scan; nothing for scans of other lasers, and those without an encoder, which are
   /// counted.
@@ -33,4 +33,4 @@ class WiredEncoder {
   std::optional<std::uint32_t> count_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::devices

@@ -8,7 +8,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::emulate {
 namespace {
 
 Address parse_address(const std::string& text) {
@@ -122,4 +122,4 @@ void EmulateStage::finish(Outputs&, Context& context) {
 
 void register_emulate(Registrar& registrar) { registrar.stage<EmulateStage>(); }
 
-}  // namespace crisp
+}  // namespace crisp::emulate

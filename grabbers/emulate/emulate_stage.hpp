@@ -13,7 +13,7 @@
 
 #include "grabbers/emulate/emulator.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// `emulate.rig`: is the devices that sent the scans and readings which it takes.
 class EmulateStage final : public Stage {
@@ -39,4 +39,4 @@ class EmulateStage final : public Stage {
 /// The emulator's stage.
 void register_emulate(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::emulate

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::emulate {
 namespace {
 
+using wire::ChannelBlock;
+
 /// Leaves of a channel the values between two angles, which devices give somewhat roundly.
-void crop(ChannelBlock& channel, const OutputRange& range) {
+void crop(ChannelBlock& channel, const wire::OutputRange& range) {
   const std::int64_t slack = channel.angle_step / 2;
   const auto inside = [&](std::size_t k) {
     const auto angle = channel.start_angle + static_cast<std::int64_t>(k) * channel.angle_step;
@@ -34,7 +36,7 @@ void thin(ChannelBlock& channel, std::uint32_t every) {
 bool is_remission(const ChannelBlock& channel) { return channel.name.starts_with("RSSI"); }
 
 /// Moves remissions to the other width; their values stay, but for what 8 bits cannot hold.
-void widen_remissions(ScanData& scan, bool wide) {
+void widen_remissions(wire::ScanData& scan, bool wide) {
   constexpr std::uint16_t kStep = 256;
   auto& from = wide ? scan.channels8 : scan.channels16;
   auto& to = wide ? scan.channels16 : scan.channels8;
@@ -48,7 +50,7 @@ void widen_remissions(ScanData& scan, bool wide) {
 }
 
 /// The calendar clock of a device before it is set: it starts at 1970, in whole milliseconds.
-TimeBlock since_start(std::uint32_t scan_time_us) {
+wire::TimeBlock since_start(std::uint32_t scan_time_us) {
   constexpr std::uint32_t kMs = 1000, kSecond = 1000 * kMs, kMinute = 60 * kSecond, kHour = 60 * kMinute;
   return {.hour = static_cast<std::uint8_t>(scan_time_us / kHour),
           .minute = static_cast<std::uint8_t>(scan_time_us / kMinute % 60),
@@ -58,8 +60,8 @@ TimeBlock since_start(std::uint32_t scan_time_us) {
 
 }  // namespace
 
-ScanSettings EmulatedDevice::settings() const {
-  ScanSettings settings{.frequency = last.scan_frequency};
+wire::ScanSettings EmulatedDevice::settings() const {
+  wire::ScanSettings settings{.frequency = last.scan_frequency};
   if (last.channels16.empty() || last.channels16.front().raw.empty()) return settings;
   const ChannelBlock& channel = last.channels16.front();
   settings.resolution = channel.angle_step * every_beam;
@@ -69,12 +71,12 @@ ScanSettings EmulatedDevice::settings() const {
   return settings;
 }
 
-OutputRange EmulatedDevice::output_range() const {
-  const ScanSettings own = settings();
-  return range.value_or(OutputRange{own.resolution, own.first, own.last});
+wire::OutputRange EmulatedDevice::output_range() const {
+  const wire::ScanSettings own = settings();
+  return range.value_or(wire::OutputRange{own.resolution, own.first, own.last});
 }
 
-ScanContent EmulatedDevice::content() const {
+wire::ScanContent EmulatedDevice::content() const {
   if (configured) return *configured;
   const bool wide = std::ranges::any_of(last.channels16, is_remission);
   return {.remission = wide || std::ranges::any_of(last.channels8, is_remission),
@@ -90,12 +92,12 @@ bool EmulatedDevice::set_resolution(std::uint32_t resolution) {
   return true;
 }
 
-bool EmulatedDevice::sends(const ScanData& scan) const {
+bool EmulatedDevice::sends(const wire::ScanData& scan) const {
   return !configured || configured->interval < 2 || scan.scan_counter % configured->interval == 0;
 }
 
-ScanData EmulatedDevice::sent(ScanData scan) const {
-  const ScanContent content = this->content();
+wire::ScanData EmulatedDevice::sent(wire::ScanData scan) const {
+  const wire::ScanContent content = this->content();
   if (!content.remission) {
     std::erase_if(scan.channels16, is_remission);
     std::erase_if(scan.channels8, is_remission);
@@ -114,4 +116,4 @@ ScanData EmulatedDevice::sent(ScanData scan) const {
   return scan;
 }
 
-}  // namespace crisp
+}  // namespace crisp::emulate

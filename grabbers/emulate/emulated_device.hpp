@@ -7,7 +7,7 @@
 #include "grabbers/wire/scan_data.hpp"
 #include "grabbers/wire/scan_settings.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// State of an emulated laser, common to all its clients. It scans as the given scans do, and
 /// cannot scan otherwise; the sent part of them can be configured: angles, every so many beams and scans,
@@ -16,23 +16,23 @@ struct EmulatedDevice {
   std::string name = "LMS1xx";  ///< that it identifies itself with
   std::string firmware = "V1.80.2";
   bool measuring = true;
-  ScanData last;                          ///< the answer to a request for one scan
-  std::optional<OutputRange> range;       ///< that somebody set
-  std::optional<ScanContent> configured;  ///< likewise
-  std::uint32_t every_beam = 1;           ///< one of so many is sent, likewise
+  wire::ScanData last;                          ///< the answer to a request for one scan
+  std::optional<wire::OutputRange> range;       ///< that somebody set
+  std::optional<wire::ScanContent> configured;  ///< likewise
+  std::uint32_t every_beam = 1;                 ///< one of so many is sent, likewise
 
   /// How its scans are.
-  ScanSettings settings() const;
-  OutputRange output_range() const;
+  wire::ScanSettings settings() const;
+  wire::OutputRange output_range() const;
   /// The content of its scans: as somebody set it, or as they came.
-  ScanContent content() const;
+  wire::ScanContent content() const;
 
   /// Sets a resolution of which the scans' is a part. @return whether it is one
   bool set_resolution(std::uint32_t resolution);
   /// Whether a scan is one of those that are sent, of every so many.
-  bool sends(const ScanData& scan) const;
+  bool sends(const wire::ScanData& scan) const;
   /// The configured part of a scan.
-  ScanData sent(ScanData scan) const;
+  wire::ScanData sent(wire::ScanData scan) const;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

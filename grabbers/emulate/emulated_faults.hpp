@@ -9,7 +9,7 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// Faults of an emulated scanner; shares from 0 to 1.
 struct EmulatedFaults {
@@ -84,4 +84,4 @@ class FaultDice {
   std::mt19937_64 random_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

@@ -15,7 +15,7 @@
 
 #include "grabbers/wire/cola_framer.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 namespace {
 
 namespace asio = boost::asio;
@@ -47,7 +47,7 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
                             });
   }
 
-  void send(Bytes telegram) {
+  void send(wire::Bytes telegram) {
     waiting_bytes_ += telegram.size();
     waiting_.push_back(std::move(telegram));
     if (waiting_.size() == 1) begin_telegram();
@@ -69,8 +69,8 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
  private:
   void take(std::size_t bytes) {
     active_ = std::chrono::steady_clock::now();
-    framer_.feed(ByteView(buffer_).first(bytes), 0, [this](const ColaFrame& frame) {
-      const auto request = parse_cola(frame.payload, frame.language);
+    framer_.feed(wire::ByteView(buffer_).first(bytes), 0, [this](const wire::ColaFrame& frame) {
+      const auto request = wire::parse_cola(frame.payload, frame.language);
       if (request) send(responder_.answer(*request));
     });
   }
@@ -86,7 +86,7 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   }
 
   void write() {
-    const Bytes& telegram = waiting_.front();
+    const wire::Bytes& telegram = waiting_.front();
     const std::size_t piece = dice_.piece(telegram.size() - written_);
     asio::async_write(socket_, asio::buffer(telegram.data() + written_, piece),
                       [self = shared_from_this()](const error_code& failure, std::size_t bytes) {
@@ -110,9 +110,9 @@ class EmulatedLaser::Session : public std::enable_shared_from_this<Session> {
   SickResponder responder_;
   FaultDice& dice_;         ///< of the laser, which outlives its sessions
   EmulatedLedger& ledger_;  ///< likewise
-  Bytes buffer_;
-  ColaFramer framer_;
-  std::deque<Bytes> waiting_;
+  wire::Bytes buffer_;
+  wire::ColaFramer framer_;
+  std::deque<wire::Bytes> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::size_t written_ = 0;  ///< [bytes] of the first that waits
   std::chrono::steady_clock::time_point active_ = std::chrono::steady_clock::now();
@@ -179,7 +179,7 @@ void EmulatedLaser::restart() {
   for (const auto& session : sessions_) session->close();
 }
 
-void EmulatedLaser::send(ScanData scan) {
+void EmulatedLaser::send(wire::ScanData scan) {
   if (dice_.restarts()) restart();
   clock_.stamp(scan);
   device_.last = scan;
@@ -194,7 +194,7 @@ void EmulatedLaser::send(ScanData scan) {
   }
 }
 
-void EmulatedLaser::send(Session& session, const ScanData& scan) {
+void EmulatedLaser::send(Session& session, const wire::ScanData& scan) {
   if (session.waiting_bytes() > kMaxWaiting) {
     ++ledger_.missed;
     return;
@@ -203,7 +203,7 @@ void EmulatedLaser::send(Session& session, const ScanData& scan) {
     ++ledger_.dropped;
     return session.close();
   }
-  Bytes telegram = encode_scan_data(scan, session.language());
+  wire::Bytes telegram = wire::encode_scan_data(scan, session.language());
   const bool damaged = dice_.damages();
   if (damaged) dice_.flip_a_bit(telegram);
   ++(damaged ? ledger_.damaged : ledger_.delivered);
@@ -223,4 +223,4 @@ std::size_t EmulatedLaser::waiting_bytes() const {
   return most;
 }
 
-}  // namespace crisp
+}  // namespace crisp::emulate

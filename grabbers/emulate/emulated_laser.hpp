@@ -15,7 +15,7 @@
 #include "grabbers/emulate/scan_restamper.hpp"
 #include "grabbers/emulate/sick_responder.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// A TCP server that speaks as a laser does, to as many clients as come. All of it happens in the thread that
 /// runs the io_context.
@@ -38,9 +38,9 @@ class EmulatedLaser {
   void stop();
 
   /// A scan as those that will be sent, by which the laser answers how it scans.
-  void introduce(ScanData scan) { device_.last = std::move(scan); }
+  void introduce(wire::ScanData scan) { device_.last = std::move(scan); }
   /// Sends a scan to all who subscribed. Who does not read what was sent misses it.
-  void send(ScanData scan);
+  void send(wire::ScanData scan);
 
   /// Counts of the faults so far.
   const EmulatedLedger& ledger() const { return ledger_; }
@@ -53,7 +53,7 @@ class EmulatedLaser {
   void accept();
   void close_idle();
   void restart();
-  void send(Session& session, const ScanData& scan);
+  void send(Session& session, const wire::ScanData& scan);
 
   boost::asio::ip::tcp::acceptor acceptor_;
   std::uint16_t port_ = 0;
@@ -65,4 +65,4 @@ class EmulatedLaser {
   std::vector<std::shared_ptr<Session>> sessions_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

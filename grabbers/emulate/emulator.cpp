@@ -13,7 +13,7 @@
 #include "grabbers/wire/plate_sentence.hpp"
 #include "grabbers/wire/scan_encoding.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 namespace {
 
 namespace asio = boost::asio;
@@ -156,7 +156,7 @@ void Emulator::keep(const HubItem& item) {
   kept_.push_back(item);
   const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
   if (scan == nullptr || !introduced_.insert((*scan)->laser).second) return;
-  const ScanData data = to_scan_data(**scan);
+  const wire::ScanData data = wire::to_scan_data(**scan);
   in_thread([&] { lasers_.at((*scan)->laser)->introduce(data); });
 }
 
@@ -177,7 +177,7 @@ void Emulator::deliver(const HubItem& item, const Interrupted& interrupted) {
   await_time(receipt_ns(item), interrupted);
   if (interrupted()) return;
   if (const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item)) {
-    const ScanData data = to_scan_data(**scan);
+    const wire::ScanData data = wire::to_scan_data(**scan);
     in_thread([&] { lasers_.at((*scan)->laser)->send(data); });
   } else {
     send(std::get<PlateReading>(item));
@@ -189,7 +189,7 @@ void Emulator::send(const PlateReading& reading) {
     ++plate_ledger_.readings_lost;
     return;
   }
-  std::string sentence = encode_plate_sentence(reading);
+  std::string sentence = wire::encode_plate_sentence(reading);
   const bool damaged = plate_dice_.damages();
   if (damaged) plate_dice_.flip_a_bit(sentence);
   ++(damaged ? plate_ledger_.readings_damaged : plate_ledger_.readings);
@@ -204,4 +204,4 @@ void Emulator::finish(const Interrupted& interrupted) {
     std::this_thread::sleep_for(kNap);
 }
 
-}  // namespace crisp
+}  // namespace crisp::emulate

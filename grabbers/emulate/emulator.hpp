@@ -19,7 +19,7 @@
 
 #include "grabbers/emulate/emulated_laser.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 struct EmulatorSettings {
   double speed = 1;              ///< speed relative to real time; 0: as fast as the clients read
@@ -99,4 +99,4 @@ class Emulator {
   std::thread thread_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

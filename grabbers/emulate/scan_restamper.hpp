@@ -5,7 +5,7 @@
 
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// The clock and counters of an emulated laser: those of the scans that it is given, but running fast by a
 /// skew, and beginning at zero when the laser starts again.
@@ -17,7 +17,7 @@ class EmulatedClock {
   void restart() { restarted_ = true; }
 
   /// Puts the clock's times and counters in the place of a scan's; scans in the order of their transmission.
-  void stamp(ScanData& scan) {
+  void stamp(wire::ScanData& scan) {
     const std::uint32_t handover = scan.transmission_time_us - scan.scan_time_us;
     if (!begun_ || restarted_) begin(scan, handover);
     elapsed_us_ += static_cast<std::uint32_t>(scan.transmission_time_us - last_us_);
@@ -29,7 +29,7 @@ class EmulatedClock {
   }
 
  private:
-  void begin(const ScanData& scan, std::uint32_t handover) {
+  void begin(const wire::ScanData& scan, std::uint32_t handover) {
     last_us_ = scan.transmission_time_us;
     elapsed_us_ = restarted_ ? handover : 0;
     start_us_ = restarted_ ? 0 : scan.transmission_time_us;
@@ -52,4 +52,4 @@ class EmulatedClock {
   std::uint16_t first_telegram_ = 0, first_scan_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

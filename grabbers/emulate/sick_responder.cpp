@@ -12,10 +12,15 @@
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 namespace {
 
-using Values = std::vector<ColaValue>;
+using wire::Bytes;
+using wire::cola_error;
+using wire::cola_message;
+using wire::ColaTelegram;
+
+using Values = std::vector<wire::ColaValue>;
 
 constexpr std::uint16_t kMethodDenied = 1, kUnknownMethod = 2, kUnknownVariable = 3, kOutOfRange = 4,
                         kInvalidData = 5, kWriteDenied = 10, kUnknownCommand = 12, kUnknownEvent = 15;
@@ -29,7 +34,7 @@ std::uint16_t word(unsigned value) { return static_cast<std::uint16_t>(value); }
 /// The evaluation of one field that is not configured: drivers refuse an answer without any.
 Values field_evaluation(const EmulatedDevice& device) {
   constexpr std::uint32_t kOneAsFloat = 0x3F800000, kNone = 0;
-  const ScanSettings scans = device.settings();
+  const wire::ScanSettings scans = device.settings();
   // One field: its version, number and counter; scale and offset of distances, and of angles; no result; no
   // time.
   return {word(1),     word(1), byte(1), kNone,   kOneAsFloat, kNone,  scans.resolution,
@@ -60,9 +65,9 @@ const std::map<std::string_view, std::function<Values(const EmulatedDevice&)>, s
        }},
       {"ODoprh", [](const EmulatedDevice&) { return Values{std::uint32_t{0}}; }},
       {"ODpwrc", [](const EmulatedDevice&) { return Values{std::uint32_t{1}}; }},
-      {"LMPscancfg", [](const auto& device) { return to_values(device.settings()); }},
-      {"LMPoutputRange", [](const auto& device) { return to_values(device.output_range()); }},
-      {"LMDscandatacfg", [](const auto& device) { return to_values(device.content()); }},
+      {"LMPscancfg", [](const auto& device) { return wire::to_values(device.settings()); }},
+      {"LMPoutputRange", [](const auto& device) { return wire::to_values(device.output_range()); }},
+      {"LMDscandatacfg", [](const auto& device) { return wire::to_values(device.content()); }},
       {"SerialNumber",
        [](const auto& device) { return Values{fmt::format("{:08}", device.last.serial_number)}; }},
       {"LFErec", [](const auto& device) { return field_evaluation(device); }},
@@ -98,8 +103,8 @@ bool is_right_password(const ColaTelegram& request) {
     reader.number(password);
     return reader.ok() && level == 3 && password == 0xF4724744;
   };
-  return request.language == ColaLanguage::A ? read(TextReader(as_text(request.parameters)))
-                                             : read(BinaryReader(request.parameters));
+  return request.language == ColaLanguage::A ? read(wire::TextReader(wire::as_text(request.parameters)))
+                                             : read(wire::BinaryReader(request.parameters));
 }
 
 }  // namespace
@@ -114,9 +119,10 @@ Bytes SickResponder::answer(const ColaTelegram& request) {
 }
 
 Bytes SickResponder::read(const ColaTelegram& request) const {
-  if (request.name == kScanDataName) {
+  if (request.name == wire::kScanDataName) {
     Bytes out;
-    append_scan_data(device_->sent(device_->last), request.language, "sRA", EncoderWidths::Position32, out);
+    wire::append_scan_data(device_->sent(device_->last), request.language, "sRA", EncoderWidths::Position32,
+                           out);
     return out;
   }
   if (is_field(request.name)) return cola_message("sRA", request.name, {byte(0)}, request.language);
@@ -127,7 +133,7 @@ Bytes SickResponder::read(const ColaTelegram& request) const {
 
 Bytes SickResponder::write(const ColaTelegram& request) {
   if (request.name == "EIHstCola") {
-    language_ = first_byte(request).value_or(1) == 1 ? ColaLanguage::B : ColaLanguage::A;
+    language_ = wire::first_byte(request).value_or(1) == 1 ? ColaLanguage::B : ColaLanguage::A;
     return cola_message("sWA", request.name, {}, request.language);
   }
   const bool known = is_one_of(
@@ -141,7 +147,7 @@ Bytes SickResponder::write(const ColaTelegram& request) {
 }
 
 Bytes SickResponder::set_output_range(const ColaTelegram& request) {
-  const auto range = output_range(request);
+  const auto range = wire::output_range(request);
   if (!range) return cola_error(kInvalidData, request.language);
   if (range->first > range->last) return cola_error(kOutOfRange, request.language);
   device_->range = range;
@@ -149,19 +155,19 @@ Bytes SickResponder::set_output_range(const ColaTelegram& request) {
 }
 
 Bytes SickResponder::set_content(const ColaTelegram& request) {
-  const auto content = scan_content(request);
+  const auto content = wire::scan_content(request);
   if (!content) return cola_error(kInvalidData, request.language);
   device_->configured = content;
   return cola_message("sWA", request.name, {}, request.language);
 }
 
 Bytes SickResponder::set_scan(const ColaTelegram& request) {
-  const auto requested = scan_settings(request, false);
+  const auto requested = wire::scan_settings(request, false);
   if (!requested) return cola_error(kInvalidData, request.language);
   const bool has_frequency = requested->frequency == device_->settings().frequency;
   const bool has_resolution = device_->set_resolution(requested->resolution);
   Values values{byte((has_frequency ? 0 : kOtherFrequency) + (has_resolution ? 0 : kOtherResolution))};
-  for (auto& value : to_values(device_->settings())) values.push_back(std::move(value));
+  for (auto& value : wire::to_values(device_->settings())) values.push_back(std::move(value));
   return cola_message("sAN", request.name, values, request.language);
 }
 
@@ -190,12 +196,12 @@ Bytes SickResponder::call(const ColaTelegram& request) {
 }
 
 Bytes SickResponder::subscribe(const ColaTelegram& request) {
-  if (!is_one_of(request.name, {kScanDataName, "LFErec", "LIDoutputstate", "LIDinputstate"})) {
+  if (!is_one_of(request.name, {wire::kScanDataName, "LFErec", "LIDoutputstate", "LIDinputstate"})) {
     return cola_error(kUnknownEvent, request.language);
   }
-  const unsigned requested = first_byte(request).value_or(0);
-  if (request.name == kScanDataName) wants_scans_ = requested == 1;
+  const unsigned requested = wire::first_byte(request).value_or(0);
+  if (request.name == wire::kScanDataName) wants_scans_ = requested == 1;
   return cola_message("sEA", request.name, {byte(requested)}, request.language);
 }
 
-}  // namespace crisp
+}  // namespace crisp::emulate

@@ -4,7 +4,7 @@
 #include "grabbers/emulate/emulated_device.hpp"
 #include "grabbers/wire/cola_encoding.hpp"
 
-namespace crisp {
+namespace crisp::emulate {
 
 /// One client's conversation with an emulated laser, without any network: telegrams in, answers out. Serves
 /// the dialogues of the usual drivers, in CoLa-A and CoLa-B; what an LMS1xx does not know, or does not allow
@@ -14,20 +14,20 @@ class SickResponder {
   explicit SickResponder(EmulatedDevice& device) : device_(&device) {}
 
   /// The framed answer, in the language of the request.
-  Bytes answer(const ColaTelegram& request);
+  wire::Bytes answer(const wire::ColaTelegram& request);
 
   bool wants_scans() const { return wants_scans_; }
   /// Language of the scans: that of the last request, unless the client has chosen one.
   ColaLanguage language() const { return language_; }
 
  private:
-  Bytes read(const ColaTelegram& request) const;
-  Bytes write(const ColaTelegram& request);
-  Bytes call(const ColaTelegram& request);
-  Bytes set_output_range(const ColaTelegram& request);
-  Bytes set_content(const ColaTelegram& request);
-  Bytes set_scan(const ColaTelegram& request);
-  Bytes subscribe(const ColaTelegram& request);
+  wire::Bytes read(const wire::ColaTelegram& request) const;
+  wire::Bytes write(const wire::ColaTelegram& request);
+  wire::Bytes call(const wire::ColaTelegram& request);
+  wire::Bytes set_output_range(const wire::ColaTelegram& request);
+  wire::Bytes set_content(const wire::ColaTelegram& request);
+  wire::Bytes set_scan(const wire::ColaTelegram& request);
+  wire::Bytes subscribe(const wire::ColaTelegram& request);
 
   EmulatedDevice* device_;
   ColaLanguage language_ = ColaLanguage::B;
@@ -35,4 +35,4 @@ class SickResponder {
   bool wants_scans_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::emulate

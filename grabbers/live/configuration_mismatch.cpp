@@ -9,8 +9,10 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::live {
 namespace {
+
+using data::kDegree;
 
 constexpr double kRounding = 2e-4 * kDegree;  // of angles in telegrams
 constexpr double kHertz = 0.01;               // likewise of frequencies
@@ -50,4 +52,4 @@ std::string difference(const SickConfiguration& requested, const Scan& scan) {
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

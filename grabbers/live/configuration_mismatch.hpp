@@ -6,7 +6,7 @@
 #include <crisp/live_settings.hpp>
 #include <crisp/scan.hpp>
 
-namespace crisp {
+namespace crisp::live {
 
 /// @throws Error if the range is not two ascending angles within a turn
 void check(const SickConfiguration& configuration);
@@ -15,4 +15,4 @@ void check(const SickConfiguration& configuration);
 /// differ from its measurement, so that the scan is decisive.
 std::string difference(const SickConfiguration& requested, const Scan& scan);
 
-}  // namespace crisp
+}  // namespace crisp::live

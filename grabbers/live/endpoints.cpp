@@ -5,7 +5,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::live {
 
 boost::asio::ip::address ip_of(const Address& address) {
   boost::system::error_code failure;
@@ -13,6 +13,10 @@ boost::asio::ip::address ip_of(const Address& address) {
   if (failure) throw Error("\"" + address.ip + "\" is no IP address", "write it like 192.168.0.1");
   return ip;
 }
+
+}  // namespace crisp::live
+
+namespace crisp {
 
 std::int64_t now_ns() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();

@@ -8,7 +8,7 @@
 #include <crisp/live_settings.hpp>
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::live {
 
 /// Receives a device's items, in the order of receipt.
 using GiveItem = std::function<void(HubItem)>;
@@ -16,4 +16,4 @@ using GiveItem = std::function<void(HubItem)>;
 /// @throws Error if the text is no IP address
 boost::asio::ip::address ip_of(const Address& address);
 
-}  // namespace crisp
+}  // namespace crisp::live

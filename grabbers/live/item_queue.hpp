@@ -10,7 +10,7 @@
 
 #include <crisp/hub_item.hpp>
 
-namespace crisp {
+namespace crisp::live {
 
 /// Between devices, which do not wait, and a pipeline that may be slow: what does not fit pushes the oldest
 /// out, and is counted.
@@ -72,4 +72,4 @@ class ItemQueue {
   bool closed_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -5,11 +5,11 @@
 #include <future>
 #include <utility>
 
-namespace crisp {
+namespace crisp::live {
 
 LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
     : queue_(settings.queue), work_(context_.get_executor()) {
-  if (settings.plate && rig.plate.encoder_of) wired_encoder_ = std::make_unique<WiredEncoder>(rig);
+  if (settings.plate && rig.plate.encoder_of) wired_encoder_ = std::make_unique<devices::WiredEncoder>(rig);
   const auto give = [this, widths = settings.sick.encoder_widths](HubItem item) {
     const auto* scan = std::get_if<std::shared_ptr<const Scan>>(&item);
     if (scan != nullptr && wired_encoder_) {
@@ -19,17 +19,19 @@ LiveSource::LiveSource(const Rig& rig, const LiveSettings& settings)
   };
   for (std::size_t i = 0; i < rig.lasers.size() && settings.lasers; ++i) {
     const RigLaser& laser = rig.lasers[i];
-    logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
-                                                static_cast<std::uint16_t>(i)));
+    logs_.push_back(std::make_unique<devices::DeviceLog>(DeviceKind::Laser, laser.name, laser.address,
+                                                         static_cast<std::uint16_t>(i)));
     SickSettings sick = settings.sick;
     sick.configuration.encoder = rig.plate.encoder_of == i;
     lasers_.push_back(
         std::make_unique<SickClient>(context_, *logs_.back(), laser.address, sick, give, settings.clock));
   }
   if (settings.plate && !wired_encoder_) {
-    logs_.push_back(std::make_unique<DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));
+    logs_.push_back(
+        std::make_unique<devices::DeviceLog>(DeviceKind::Plate, rig.plate.name, rig.plate.address));
     const bool is_stream = settings.plate_at.transport != PlateTransport::Datagrams;
-    PlateFramer framer(rig.plate.line, is_stream ? PlateBytes::stream : PlateBytes::datagrams);
+    wire::PlateFramer framer(rig.plate.line,
+                             is_stream ? wire::PlateBytes::stream : wire::PlateBytes::datagrams);
     plate_ =
         make_plate_receiver(context_, PlateReadings(*logs_.back(), give, settings.clock, std::move(framer)),
                             rig.plate.address, settings.plate_at);
@@ -92,4 +94,4 @@ CaptureStatistics LiveSource::statistics() {
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

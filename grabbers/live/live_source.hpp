@@ -19,7 +19,7 @@
 #include "grabbers/live/plate_receiver.hpp"
 #include "grabbers/live/sick_client.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// The devices of a rig over the network: scans and readings in the order in which this process receives
 /// them. It retries unreachable devices; the source ends only when it is stopped.
@@ -56,13 +56,13 @@ class LiveSource final : public ItemSource {
   void end_thread();
 
   ItemQueue queue_;
-  std::vector<std::unique_ptr<DeviceLog>> logs_;
+  std::vector<std::unique_ptr<devices::DeviceLog>> logs_;
   boost::asio::io_context context_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
   std::vector<std::unique_ptr<SickClient>> lasers_;
-  std::unique_ptr<WiredEncoder> wired_encoder_;
+  std::unique_ptr<devices::WiredEncoder> wired_encoder_;
   std::unique_ptr<PlateReceiver> plate_;
   std::thread thread_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::live

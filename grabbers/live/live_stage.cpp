@@ -15,7 +15,7 @@
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/live/live_status.hpp"
 
-namespace crisp {
+namespace crisp::live {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{50};  // polling interval for a stop of the run
@@ -143,7 +143,7 @@ void LiveStage<devices>::check(const RunSettings& run) const {
   if (kPlate && plate_at.transport == PlateTransport::Datagrams) {
     errors.keep_of([&] { ip_of({plate_at.listen, 0}); });
   }
-  errors.keep_of([&] { crisp::check(settings_.sick.configuration); });
+  errors.keep_of([&] { live::check(settings_.sick.configuration); });
   errors.keep_of([&] {
     if (settings_.sick.start || settings_.sick.configuration.is_empty()) return;
     throw Error("lasers without a login cannot be configured", "remove start: false");
@@ -194,15 +194,15 @@ std::string LiveStage<devices>::running(double elapsed) const {
 
 template <LiveDevices devices>
 void LiveStage<devices>::report(const CaptureStatistics& statistics, Context& context) const {
-  context.report(to_json(statistics));
-  context.print(device_table(statistics));
+  context.report(capture::to_json(statistics));
+  context.print(capture::device_table(statistics));
   for (const auto& [what, n] : statistics.losses.all()) context.count(what, n);
-  for (auto& warning : loss_warnings(statistics)) context.warn(std::move(warning));
-  for (auto& caveat : lost_devices(statistics)) context.mark_untrusted(std::move(caveat));
+  for (auto& warning : capture::loss_warnings(statistics)) context.warn(std::move(warning));
+  for (auto& caveat : capture::lost_devices(statistics)) context.mark_untrusted(std::move(caveat));
   for (const auto& device : statistics.devices) {
     for (const auto& [what, n] : device.losses.all()) context.count(device.name + ": " + what, n);
     for (const auto& [what, n] : device.notes.all()) context.count(device.name + ": " + what, n);
-    if (device.items == 0) context.warn("nothing came from " + title(device));
+    if (device.items == 0) context.warn("nothing came from " + capture::title(device));
   }
 }
 
@@ -212,4 +212,4 @@ void register_live(Registrar& registrar) {
   registrar.stage<LiveStage<LiveDevices::Plate>>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

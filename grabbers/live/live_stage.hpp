@@ -10,7 +10,7 @@
 
 #include "grabbers/live/live_source.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// The devices of a rig that a live stage grabs.
 enum class LiveDevices : std::uint8_t { LasersAndPlate, Lasers, Plate };
@@ -41,4 +41,4 @@ class LiveStage final : public Stage {
 /// The live stages.
 void register_live(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::live

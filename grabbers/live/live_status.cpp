@@ -8,13 +8,13 @@
 #include "grabbers/capture/capture_report.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 std::uint64_t lost_items(const CaptureStatistics& statistics) {
   std::uint64_t lost = 0;
   for (const auto& [what, n] : statistics.losses.all()) lost += n;
   // a device's other losses are of bytes and telegrams of the same items
-  for (const auto& device : statistics.devices) lost += never_came(device);
+  for (const auto& device : statistics.devices) lost += capture::never_came(device);
   return lost;
 }
 
@@ -40,14 +40,15 @@ StageStatus LiveStatus::report(const CaptureStatistics& statistics, double now, 
     const double rate = elapsed > 0 ? static_cast<double>(device.items - before) / elapsed : 0;
     status.line += fmt::format("{}{} {:.1f} Hz", status.line.empty() ? "" : ", ", device.name, rate);
     status.gauges.push_back({"items_total", static_cast<double>(device.items), device.name});
-    status.gauges.push_back({"items_lost_total", static_cast<double>(never_came(device)), device.name});
+    status.gauges.push_back(
+        {"items_lost_total", static_cast<double>(capture::never_came(device)), device.name});
     status.gauges.push_back({"rate_hertz", rate, device.name});
     note(device.name, device.losses, now, status.events);
     note(device.name, device.notes, now, status.events);
   }
   note("", statistics.losses, now, status.events);
   requested_ = now;
-  const double latency = latencies_.empty() ? 0 : quantile_in_place(latencies_, 0.99);
+  const double latency = latencies_.empty() ? 0 : statistics::quantile_in_place(latencies_, 0.99);
   latencies_.clear();
   const std::uint64_t lost = lost_items(statistics);
   status.line += fmt::format(", lost {}, queue {}, latency {:.1f} ms", lost, waiting, 1e3 * latency);
@@ -57,4 +58,4 @@ StageStatus LiveStatus::report(const CaptureStatistics& statistics, double now, 
   return status;
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

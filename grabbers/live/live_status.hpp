@@ -10,7 +10,7 @@
 #include <crisp/capture_statistics.hpp>
 #include <crisp/context.hpp>
 
-namespace crisp {
+namespace crisp::live {
 
 /// Status of a live source: what was received since the last report, and all losses.
 class LiveStatus {
@@ -43,4 +43,4 @@ class LiveStatus {
 /// Number of a device's lost items, by all causes.
 std::uint64_t lost_items(const CaptureStatistics& statistics);
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::live {
 namespace {
 
 constexpr std::uint16_t kPlatePort = 4000;
@@ -45,7 +45,7 @@ void PlateDatagrams::receive() {
 
 void PlateDatagrams::take(std::size_t bytes) {
   if (from_.address() != plate_) return readings_.note("datagrams from other addresses than the plate's");
-  readings_.take(ByteView(buffer_).first(bytes));
+  readings_.take(wire::ByteView(buffer_).first(bytes));
   readings_.gap();
 }
 
@@ -55,4 +55,4 @@ void PlateDatagrams::stop() {
   socket_.close(ignored);
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

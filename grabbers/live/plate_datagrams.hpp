@@ -5,7 +5,7 @@
 
 #include "grabbers/live/plate_receiver.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// The plate's sentences in UDP datagrams.
 class PlateDatagrams final : public PlateReceiver {
@@ -27,7 +27,7 @@ class PlateDatagrams final : public PlateReceiver {
   boost::asio::ip::udp::socket socket_;
   std::uint16_t port_ = 0;
   boost::asio::ip::udp::endpoint from_;
-  Bytes buffer_;
+  wire::Bytes buffer_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -5,9 +5,9 @@
 #include "grabbers/live/plate_datagrams.hpp"
 #include "grabbers/live/plate_stream.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
-bool PlateReadings::take(ByteView bytes) {
+bool PlateReadings::take(wire::ByteView bytes) {
   bool any = false;
   framer_.feed(bytes, clock_(), [&](const PlateReading& reading) {
     any = true;
@@ -22,8 +22,8 @@ void PlateReadings::take(const PlateReading& reading) {
 
 void PlateReadings::gap() {
   framer_.gap([&](const PlateReading& reading) { take(reading); });
-  const PlateFramer::Counts counts = framer_.take_counts();
-  if (counts.any_damage()) note_framing(counts, log_);
+  const wire::PlateFramer::Counts counts = framer_.take_counts();
+  if (counts.any_damage()) devices::note_framing(counts, log_);
 }
 
 std::unique_ptr<PlateReceiver> make_plate_receiver(boost::asio::io_context& context, PlateReadings readings,
@@ -39,4 +39,4 @@ std::unique_ptr<PlateReceiver> make_plate_receiver(boost::asio::io_context& cont
   return std::make_unique<PlateDatagrams>(context, std::move(readings), plate, settings);
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

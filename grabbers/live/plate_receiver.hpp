@@ -13,16 +13,16 @@
 #include "grabbers/live/endpoints.hpp"
 #include "grabbers/wire/plate_framer.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// From the plate's bytes, however they came, to its readings.
 class PlateReadings {
  public:
-  PlateReadings(DeviceLog& log, GiveItem give, HubClock clock, PlateFramer framer)
+  PlateReadings(devices::DeviceLog& log, GiveItem give, HubClock clock, wire::PlateFramer framer)
       : log_(log), give_(std::move(give)), clock_(std::move(clock)), framer_(std::move(framer)) {}
 
   /// Bytes that came just now. @return whether there was a reading in them
-  bool take(ByteView bytes);
+  bool take(wire::ByteView bytes);
   /// The datagram or connection is over: reports incomplete and damaged data.
   void gap();
   void note(const std::string& what) { log_.note(what); }
@@ -30,10 +30,10 @@ class PlateReadings {
  private:
   void take(const PlateReading& reading);
 
-  DeviceLog& log_;
+  devices::DeviceLog& log_;
   GiveItem give_;
   HubClock clock_;
-  PlateFramer framer_;
+  wire::PlateFramer framer_;
 };
 
 /// Receives the plate's sentences, in the thread that runs the io_context.
@@ -56,4 +56,4 @@ class PlateReceiver {
 std::unique_ptr<PlateReceiver> make_plate_receiver(boost::asio::io_context& context, PlateReadings readings,
                                                    const Address& plate, const PlateSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -8,7 +8,7 @@
 
 #include "grabbers/live/restartable_timer.hpp"
 
-namespace crisp {
+namespace crisp::live {
 namespace {
 
 using boost::asio::serial_port;
@@ -58,7 +58,7 @@ class PlateStream final : public PlateReceiver {
                           [this, mine = link_number_](const error_code& failure, std::size_t bytes) {
                             if (mine != link_number_) return;
                             if (failure) return fail(failure.message());
-                            if (readings_.take(ByteView(buffer_).first(bytes))) {
+                            if (readings_.take(wire::ByteView(buffer_).first(bytes))) {
                               back_off_.reset();
                               await_reading();
                             }
@@ -92,7 +92,7 @@ class PlateStream final : public PlateReceiver {
   std::uint64_t link_number_ = 0;  ///< callbacks of an earlier one are ignored
   RestartableTimer alarm_;
   BackOff back_off_;
-  Bytes buffer_;
+  wire::Bytes buffer_;
   bool stopped_ = false;
 };
 
@@ -124,4 +124,4 @@ std::unique_ptr<PlateReceiver> plate_over_serial_line(boost::asio::io_context& c
       [settings](serial_port& line, const auto& opened) { opened(open_line(line, settings)); });
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -3,7 +3,7 @@
 
 #include "grabbers/live/plate_receiver.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// The rig's plate is a TCP server (port 4000 unless the rig names one) that sends its sentences to whoever
 /// connects. A connection that breaks or falls silent is made anew. @throws Error if the address is none
@@ -14,4 +14,4 @@ std::unique_ptr<PlateReceiver> plate_over_tcp(boost::asio::io_context& context, 
 std::unique_ptr<PlateReceiver> plate_over_serial_line(boost::asio::io_context& context,
                                                       PlateReadings readings, const PlateSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::live

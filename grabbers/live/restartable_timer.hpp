@@ -9,7 +9,7 @@
 #include <functional>
 #include <utility>
 
-namespace crisp {
+namespace crisp::live {
 
 /// One thing that is to happen later, in the thread that runs the io_context: set anew, what it was set to
 /// before does not happen.
@@ -48,4 +48,4 @@ class BackOff {
   double pause_ = kFirst;
 };
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -7,7 +7,7 @@
 
 #include "grabbers/devices/framing_losses.hpp"
 
-namespace crisp {
+namespace crisp::live {
 namespace {
 
 namespace asio = boost::asio;
@@ -26,7 +26,7 @@ ColaLanguage other(ColaLanguage language) {
 
 }  // namespace
 
-SickClient::SickClient(asio::io_context& context, DeviceLog& log, const Address& address,
+SickClient::SickClient(asio::io_context& context, devices::DeviceLog& log, const Address& address,
                        SickSettings settings, GiveItem give, HubClock clock)
     : context_(context),
       log_(log),
@@ -90,14 +90,14 @@ void SickClient::read() {
 }
 
 void SickClient::take(std::size_t bytes) {
-  const auto sink = [this](const ColaFrame& frame) { take(frame); };
-  framer_.feed(ByteView(buffer_).first(bytes), clock_(), sink);
+  const auto sink = [this](const wire::ColaFrame& frame) { take(frame); };
+  framer_.feed(wire::ByteView(buffer_).first(bytes), clock_(), sink);
   if (over_) fail(*std::exchange(over_, {}));
 }
 
-void SickClient::take(const ColaFrame& frame) {
+void SickClient::take(const wire::ColaFrame& frame) {
   const bool came = !stopping_ && take_scan(frame);
-  const auto telegram = parse_cola(frame.payload, frame.language);
+  const auto telegram = wire::parse_cola(frame.payload, frame.language);
   if (!telegram || over_) return;
   if (stopping_) {
     if (telegram->command == "sEA") over_ = "farewell";
@@ -108,7 +108,7 @@ void SickClient::take(const ColaFrame& frame) {
   }
 }
 
-bool SickClient::take_scan(const ColaFrame& frame) {
+bool SickClient::take_scan(const wire::ColaFrame& frame) {
   auto scan = log_.take(frame, settings_.encoder_widths);
   if (!scan) return false;
   if (!compared_ && dialogue_ && dialogue_->step() == SickStep::Scans) note_difference(*scan);
@@ -149,10 +149,10 @@ void SickClient::fail(const std::string& reason) {
 }
 
 void SickClient::close() {
-  framer_.gap([this](const ColaFrame& frame) {
+  framer_.gap([this](const wire::ColaFrame& frame) {
     if (!stopping_) take_scan(frame);
   });
-  note_framing(framer_.counts(), log_);
+  devices::note_framing(framer_.counts(), log_);
   framer_ = {};
   dialogue_.reset();
   ++connection_;
@@ -169,12 +169,12 @@ void SickClient::stop() {
   alarm_.set(kFarewell, [this] { close(); });
 }
 
-void SickClient::send(const Bytes& telegram) {
-  const auto kept = std::make_shared<const Bytes>(telegram);
+void SickClient::send(const wire::Bytes& telegram) {
+  const auto kept = std::make_shared<const wire::Bytes>(telegram);
   asio::async_write(socket_, asio::buffer(*kept),
                     [this, kept, mine = connection_](const error_code& failure, std::size_t) {
                       if (failure && mine == connection_) fail(failure.message());
                     });
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -14,7 +14,7 @@
 #include "grabbers/live/restartable_timer.hpp"
 #include "grabbers/live/sick_dialogue.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// One laser on the network: connects, detects its language, requests scans, and reconnects whenever the
 /// connection breaks or falls silent. All of it happens in the thread that runs the io_context.
@@ -22,8 +22,8 @@ class SickClient {
  public:
   /// @param give  called for each scan, in the order of receipt
   /// @throws Error if the address is none
-  SickClient(boost::asio::io_context& context, DeviceLog& log, const Address& address, SickSettings settings,
-             GiveItem give, HubClock clock);
+  SickClient(boost::asio::io_context& context, devices::DeviceLog& log, const Address& address,
+             SickSettings settings, GiveItem give, HubClock clock);
   SickClient(const SickClient&) = delete;
   SickClient& operator=(const SickClient&) = delete;
 
@@ -38,17 +38,17 @@ class SickClient {
   void not_answered();
   void read();
   void take(std::size_t bytes);
-  void take(const ColaFrame& frame);
-  bool take_scan(const ColaFrame& frame);  ///< gives it on, if it is one that did not come before
+  void take(const wire::ColaFrame& frame);
+  bool take_scan(const wire::ColaFrame& frame);  ///< gives it on, if it is one that did not come before
   void proceed(SickDialogue::Effect effect);
   void await_scan();
   void fail(const std::string& reason);
   void close();
-  void send(const Bytes& telegram);
+  void send(const wire::Bytes& telegram);
   void note_difference(const Scan& scan);
 
   boost::asio::io_context& context_;
-  DeviceLog& log_;
+  devices::DeviceLog& log_;
   boost::asio::ip::tcp::endpoint endpoint_;
   SickSettings settings_;
   GiveItem give_;
@@ -58,8 +58,8 @@ class SickClient {
   RestartableTimer alarm_;
   BackOff back_off_;
   std::uint64_t connection_ = 0;  ///< callbacks of an earlier one are ignored
-  Bytes buffer_;
-  ColaFramer framer_;
+  wire::Bytes buffer_;
+  wire::ColaFramer framer_;
   std::optional<SickDialogue> dialogue_;
   std::size_t refusals_reported_ = 0;
   ColaLanguage language_;  ///< that was understood last
@@ -69,4 +69,4 @@ class SickClient {
   bool stopping_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::live

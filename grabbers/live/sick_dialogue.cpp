@@ -7,25 +7,25 @@
 
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 SickDialogue::SickDialogue(ColaLanguage language, bool start, SickConfiguration requested)
     : language_(language), start_(start || !requested.is_empty()), requested_(std::move(requested)) {}
 
-Bytes SickDialogue::request() const {
+wire::Bytes SickDialogue::request() const {
   if (step_ >= SickStep::Scans) return {};
   const SickRequest request = now();
-  return cola_message(request.command, request.name, request.parameters, language_);
+  return wire::cola_message(request.command, request.name, request.parameters, language_);
 }
 
-SickDialogue::Effect SickDialogue::take(const ColaTelegram& telegram) {
+SickDialogue::Effect SickDialogue::take(const wire::ColaTelegram& telegram) {
   if (step_ >= SickStep::Scans) return Effect::None;
   const SickRequest request = now();
   const bool error = telegram.command == "sFA";
   if (!error && (telegram.command != request.answer || telegram.name != request.name)) return Effect::None;
   if (step_ == SickStep::DetectLanguage) return advance();  // any answer shows that it understood
   if (!error && is_granted(step_, telegram)) {
-    if (step_ == SickStep::ReadScanSettings) settings_ = *scan_settings(telegram, false);
+    if (step_ == SickStep::ReadScanSettings) settings_ = *wire::scan_settings(telegram, false);
     return advance();
   }
   if (step_ == SickStep::AwaitReady && !error) return Effect::RequestLater;
@@ -64,8 +64,8 @@ SickDialogue::Effect SickDialogue::advance() {
   return Effect::Next;
 }
 
-Bytes unsubscribe_request(ColaLanguage language) {
-  return cola_message("sEN", kScanDataName, {std::uint8_t{0}}, language);
+wire::Bytes unsubscribe_request(ColaLanguage language) {
+  return wire::cola_message("sEN", wire::kScanDataName, {std::uint8_t{0}}, language);
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

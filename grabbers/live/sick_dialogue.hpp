@@ -6,7 +6,7 @@
 
 #include "grabbers/live/sick_requests.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// The dialogue with a laser until its scans come, without any network: requests out, telegrams in.
 class SickDialogue {
@@ -19,7 +19,7 @@ class SickDialogue {
   ColaLanguage language() const { return language_; }
 
   /// The framed request of this step; none once scans come or were refused.
-  Bytes request() const;
+  wire::Bytes request() const;
   /// Whether the answer to it may take a minute: the motor turns anew.
   bool is_slow() const { return step_ == SickStep::SetScanSettings; }
 
@@ -29,7 +29,7 @@ class SickDialogue {
     Next,          ///< go on with the next request
     RequestLater,  ///< the same again, in a while
   };
-  Effect take(const ColaTelegram& telegram);
+  Effect take(const wire::ColaTelegram& telegram);
 
   /// The laser's refusals, in words; each once.
   const std::vector<std::string>& refusals() const { return refusals_; }
@@ -42,12 +42,12 @@ class SickDialogue {
   ColaLanguage language_;
   bool start_;
   SickConfiguration requested_;
-  ScanSettings settings_;  ///< of the laser
+  wire::ScanSettings settings_;  ///< of the laser
   SickStep step_ = SickStep::DetectLanguage;
   std::vector<std::string> refusals_;
 };
 
 /// The framed request that ends the scans.
-Bytes unsubscribe_request(ColaLanguage language);
+wire::Bytes unsubscribe_request(ColaLanguage language);
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -9,7 +9,7 @@
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::live {
 namespace {
 
 constexpr std::uint8_t kAuthorisedClient = 3;
@@ -17,10 +17,10 @@ constexpr std::uint32_t kItsPassword = 0xF4724744;  // as SICK's manual prints i
 constexpr double kFrequencyUnits = 100;             // a Hertz
 
 std::int32_t angle_units(double angle) {
-  return static_cast<std::int32_t>(std::lround(angle / kDegree * kUnitsPerDegree));
+  return static_cast<std::int32_t>(std::lround(angle / data::kDegree * wire::kUnitsPerDegree));
 }
 
-OutputRange requested_range(const SickConfiguration& requested, const ScanSettings& now) {
+wire::OutputRange requested_range(const SickConfiguration& requested, const wire::ScanSettings& now) {
   return {.resolution = changed(now, requested).resolution,
           .first = angle_units(requested.output_range.at(0)),
           .last = angle_units(requested.output_range.at(1))};
@@ -36,7 +36,7 @@ std::string_view scan_settings_status(unsigned status) {
 
 }  // namespace
 
-ScanSettings changed(ScanSettings now, const SickConfiguration& requested) {
+wire::ScanSettings changed(wire::ScanSettings now, const SickConfiguration& requested) {
   if (requested.frequency) {
     now.frequency = static_cast<std::uint32_t>(std::lround(*requested.frequency * kFrequencyUnits));
   }
@@ -44,22 +44,23 @@ ScanSettings changed(ScanSettings now, const SickConfiguration& requested) {
   return now;
 }
 
-SickRequest sick_request(SickStep step, const SickConfiguration& requested, const ScanSettings& now) {
+SickRequest sick_request(SickStep step, const SickConfiguration& requested, const wire::ScanSettings& now) {
   switch (step) {
     case SickStep::LogIn:
       return {"sMN", "SetAccessMode", {kAuthorisedClient, kItsPassword}, "sAN"};
     case SickStep::ReadScanSettings:
       return {"sRN", "LMPscancfg", {}, "sRA"};
     case SickStep::SetScanSettings:
-      return {"sMN", "mLMPsetscancfg", to_values(changed(now, requested)), "sAN"};
+      return {"sMN", "mLMPsetscancfg", wire::to_values(changed(now, requested)), "sAN"};
     case SickStep::SetScanContent:
       return {"sWN", "LMDscandatacfg",
-              to_values(ScanContent{.remission = *requested.remission,
+              wire::to_values(
+                  wire::ScanContent{.remission = *requested.remission,
                                     .wide = true,
                                     .encoders = static_cast<std::uint16_t>(requested.encoder ? 1 : 0)}),
               "sWA"};
     case SickStep::SetOutputRange:
-      return {"sWN", "LMPoutputRange", to_values(requested_range(requested, now)), "sWA"};
+      return {"sWN", "LMPoutputRange", wire::to_values(requested_range(requested, now)), "sWA"};
     case SickStep::SetNtpOff:
       return {"sWN", "TSCRole", {std::uint8_t{0}}, "sWA"};
     case SickStep::StartMeasuring:
@@ -67,36 +68,36 @@ SickRequest sick_request(SickStep step, const SickConfiguration& requested, cons
     case SickStep::Run:
       return {"sMN", "Run", {}, "sAN"};
     case SickStep::Subscribe:
-      return {"sEN", kScanDataName, {std::uint8_t{1}}, "sEA"};
+      return {"sEN", wire::kScanDataName, {std::uint8_t{1}}, "sEA"};
     default:
       return {"sRN", "SCdevicestate", {}, "sRA"};
   }
 }
 
-bool is_granted(SickStep step, const ColaTelegram& answer) {
+bool is_granted(SickStep step, const wire::ColaTelegram& answer) {
   switch (step) {
     case SickStep::ReadScanSettings:
-      return scan_settings(answer, false).has_value();
+      return wire::scan_settings(answer, false).has_value();
     case SickStep::SetScanSettings:
     case SickStep::StartMeasuring:
-      return first_byte(answer) == 0U;
+      return wire::first_byte(answer) == 0U;
     case SickStep::LogIn:
     case SickStep::Run:
     case SickStep::AwaitReady:
     case SickStep::Subscribe:
-      return first_byte(answer) == 1U;
+      return wire::first_byte(answer) == 1U;
     default:
       return true;  // what is written is only acknowledged
   }
 }
 
-std::string refusal_text(SickStep step, const ColaTelegram& answer) {
-  if (const auto error = cola_error_code(answer)) {
-    return fmt::format("sFA {} ({})", *error, cola_error_text(*error));
+std::string refusal_text(SickStep step, const wire::ColaTelegram& answer) {
+  if (const auto error = wire::cola_error_code(answer)) {
+    return fmt::format("sFA {} ({})", *error, wire::cola_error_text(*error));
   }
-  const unsigned value = first_byte(answer).value_or(0);
+  const unsigned value = wire::first_byte(answer).value_or(0);
   if (step != SickStep::SetScanSettings) return fmt::format("answered {}", value);
   return fmt::format("answered {} ({})", value, scan_settings_status(value));
 }
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -9,7 +9,7 @@
 #include "grabbers/live/configuration_mismatch.hpp"
 #include "grabbers/wire/scan_settings.hpp"
 
-namespace crisp {
+namespace crisp::live {
 
 /// Steps of the dialogue with a laser.
 enum class SickStep : std::uint8_t {
@@ -31,20 +31,20 @@ enum class SickStep : std::uint8_t {
 /// The request of one step, and its answer.
 struct SickRequest {
   std::string_view command, name;
-  std::vector<ColaValue> parameters;
+  std::vector<wire::ColaValue> parameters;
   std::string_view answer;  ///< the command of what is answered
 };
 
 /// @param now  the laser's current settings, as it reported them
-SickRequest sick_request(SickStep step, const SickConfiguration& requested, const ScanSettings& now);
+SickRequest sick_request(SickStep step, const SickConfiguration& requested, const wire::ScanSettings& now);
 
 /// The settings that `now` are in force with what is wanted in their place.
-ScanSettings changed(ScanSettings now, const SickConfiguration& requested);
+wire::ScanSettings changed(wire::ScanSettings now, const SickConfiguration& requested);
 
 /// Whether an answer (that is no sFA) confirms the request.
-bool is_granted(SickStep step, const ColaTelegram& answer);
+bool is_granted(SickStep step, const wire::ColaTelegram& answer);
 
 /// Why it is not so, in words: "answered 2 (the resolution is not possible)".
-std::string refusal_text(SickStep step, const ColaTelegram& answer);
+std::string refusal_text(SickStep step, const wire::ColaTelegram& answer);
 
-}  // namespace crisp
+}  // namespace crisp::live

@@ -12,7 +12,7 @@
 #include "grabbers/pcd/surplus_points.hpp"
 #include "pipeline/pcd/parts.hpp"
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 namespace {
 
 /// Warning of rounded doubles, if the rounding exceeds a cloud's own noise.
@@ -42,7 +42,7 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
   constexpr double kVisible = 1e-4;  // [m]
   double rounding = 0;
   std::array<double, 3> shift{};
-  read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
+  pcd::read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
     if (!table.has("x") && table.has("range")) {
       throw Error(file.string() + " holds measurements, no cloud", "read it with grabber.pcd");
     }
@@ -61,4 +61,4 @@ void GrabCloudStage::process(const Inputs&, Outputs& out, Context& context) {
   if (rounding > kVisible) context.warn(rounding_in_words(rounding, shift));
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

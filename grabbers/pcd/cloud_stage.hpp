@@ -7,7 +7,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 /// `grabber.cloud`: the cloud of a PCD file of any origin.
 class GrabCloudStage final : public Stage {
@@ -20,4 +20,4 @@ class GrabCloudStage final : public Stage {
   std::vector<double> shift_ = {0, 0, 0};  ///< [m]
 };
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

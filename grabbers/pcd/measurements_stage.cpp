@@ -10,7 +10,7 @@
 #include "grabbers/pcd/surplus_points.hpp"
 #include "pipeline/pcd/parts.hpp"
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 namespace {
 
 constexpr std::size_t kAtOnce = 1 << 15;  // measurements in one item: enough that an item costs nothing
@@ -53,7 +53,7 @@ void GrabMeasurementsStage::describe(StageDescription<GrabMeasurementsStage>& d)
 }
 
 void GrabMeasurementsStage::process(const Inputs&, Outputs& out, Context& context) {
-  read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
+  pcd::read_parts(file_, [&](const PcdTable& table, const std::filesystem::path& file) {
     context.reads(file);
     if (!table.has("range") && table.has("x")) {
       throw Error(file.string() + " holds a cloud, no measurements", "read it with grabber.cloud");
@@ -89,4 +89,4 @@ PlateTrajectory GrabMeasurementsStage::trajectory(const PcdTable& table, const s
   return about(plate_file, [&] { return trajectory_of(readings); });
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -9,7 +9,7 @@
 #include <crisp/plate_trajectory.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 /// `grabber.pcd`: raw measurements that an earlier run wrote, so that a run can stop and go on between
 /// stages.
@@ -26,4 +26,4 @@ class GrabMeasurementsStage final : public Stage {
   double max_gap_ = 0.1;
 };
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -9,7 +9,7 @@
 
 #include <crisp/pcd_table.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 namespace {
 
 /// The numbers of a column that are numbers.
@@ -87,4 +87,4 @@ bool recognises(std::string_view head) {
 
 Inspector pcd_inspector() { return {"a cloud", recognises, inspect, {".pcd"}}; }
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -3,9 +3,9 @@
 
 #include <crisp/inspector.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 /// Describes a PCD file of crisp or of any other program: points, fields, and the range of each.
 Inspector pcd_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

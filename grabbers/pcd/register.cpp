@@ -5,7 +5,7 @@
 #include "grabbers/pcd/measurements_stage.hpp"
 #include "grabbers/pcd/pcd_inspector.hpp"
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 void register_pcd(Registrar& registrar) {
   registrar.stage<GrabCloudStage>();
@@ -13,4 +13,4 @@ void register_pcd(Registrar& registrar) {
   registrar.inspector(pcd_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 void register_pcd(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -8,7 +8,7 @@
 #include <crisp/context.hpp>
 #include <crisp/pcd_table.hpp>
 
-namespace crisp {
+namespace crisp::pcd_grabber {
 
 /// Counts points that stand in a file behind those that its header gives, and warns of them.
 inline void count_surplus(const PcdTable& table, const std::filesystem::path& file, Context& context) {
@@ -19,4 +19,4 @@ inline void count_surplus(const PcdTable& table, const std::filesystem::path& fi
       file.string(), table.surplus(), table.rows()));
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd_grabber

@@ -16,8 +16,10 @@
 #include "grabbers/wire/scan_encoding.hpp"
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::record {
 namespace {
+
+using capture::FrameOrigin;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kHold = 20 * kMillisecond;  // longer than any frame lies before or behind its item
@@ -29,11 +31,11 @@ constexpr std::size_t kMaxWaiting =
 /// @throws Error  if the file cannot be read
 FrameOrigin origin_of_file(const std::filesystem::path& file) {
   constexpr std::size_t kMagic = 4;
-  FileWindow(file).peek(kMagic);
+  capture::FileWindow(file).peek(kMagic);
   try {
-    CaptureFile capture(file);
-    const Packet* first = capture.next();
-    return first == nullptr ? FrameOrigin::Recorded : origin_of(first->bytes);
+    capture::CaptureFile capture(file);
+    const capture::Packet* first = capture.next();
+    return first == nullptr ? FrameOrigin::Recorded : capture::origin_of(first->bytes);
   } catch (const Error&) {  // no capture at all
     return FrameOrigin::Foreign;
   }
@@ -53,7 +55,7 @@ bool is_there(const std::filesystem::path& file) {
 }
 
 /// A note on a recording that is about to be continued; empty if it is sound.
-std::string note_on(const std::filesystem::path& file, const PcapExtent& extent) {
+std::string note_on(const std::filesystem::path& file, const capture::PcapExtent& extent) {
   if (extent.whole < extent.bytes)
     return fmt::format(
         "{} ended within a record, as after a crash or a power cut: the {} bytes of that record were cut off",
@@ -83,15 +85,16 @@ void refuse_foreign(const std::filesystem::path& file) {
 /// One capture that is being written.
 struct CaptureRecorder::File {
   File(const std::filesystem::path& path, const Rig& rig)
-      : pcap(path, PcapMode::Grow),
-        sorter([this](std::int64_t ns, ByteView frame) { pcap.write(ns, frame); }, kHold),
-        hub(rig, ColaLanguage::B, [this](std::int64_t ns, ByteView frame) { sorter.push(ns, frame); }),
+      : pcap(path, capture::PcapMode::Grow),
+        sorter([this](std::int64_t ns, wire::ByteView frame) { pcap.write(ns, frame); }, kHold),
+        hub(rig, ColaLanguage::B, [this](std::int64_t ns, wire::ByteView frame) { sorter.push(ns, frame); }),
         connected(rig.lasers.size()) {}
 
   void write(const Scan& scan) {
     if (!connected.at(scan.laser)) hub.connect(scan.laser, scan.receipt_ns - kHandshake);
     connected[scan.laser] = true;
-    hub.telegram(scan.laser, encode_scan_data(to_scan_data(scan), ColaLanguage::B), scan.receipt_ns);
+    hub.telegram(scan.laser, wire::encode_scan_data(wire::to_scan_data(scan), ColaLanguage::B),
+                 scan.receipt_ns);
   }
 
   void write(const PlateReading& reading) { hub.reading(reading); }
@@ -102,9 +105,9 @@ struct CaptureRecorder::File {
     pcap.close();
   }
 
-  PcapWriter pcap;
-  FrameSorter sorter;
-  HubTrafficEncoder hub;
+  capture::PcapWriter pcap;
+  capture::FrameSorter sorter;
+  capture::HubTrafficEncoder hub;
   std::vector<bool> connected;
   std::optional<std::int64_t> first_ns, latest_ns;  ///< of the items
 };
@@ -112,7 +115,7 @@ struct CaptureRecorder::File {
 CaptureRecorder::CaptureRecorder(std::filesystem::path file, Rig rig, const RecorderSettings& settings)
     : first_(std::move(file)), rig_(std::move(rig)), settings_(settings) {
   open();
-  BatchSettings batches{.enough = kAtOnce, .most = kMaxWaiting, .pause = settings_.safe_after / 2};
+  data::BatchSettings batches{.enough = kAtOnce, .most = kMaxWaiting, .pause = settings_.safe_after / 2};
   if (settings_.safe_after == 0) batches = {};
   writer_.emplace(batches, [this](const std::vector<HubItem>& items) { record(items); });
 }
@@ -145,7 +148,7 @@ std::filesystem::path CaptureRecorder::next_path() {
 void CaptureRecorder::open() {
   std::filesystem::path path = next_path();
   for (refuse_foreign(path); is_there(path); refuse_foreign(path = next_path())) {
-    const PcapExtent extent = pcap_extent(path);
+    const capture::PcapExtent extent = capture::pcap_extent(path);
     if (extent.can_be_continued()) {
       if (auto note = note_on(path, extent); !note.empty()) notes_.push_back(std::move(note));
       break;
@@ -183,7 +186,7 @@ void CaptureRecorder::record(const HubItem& item) {
 }
 
 void CaptureRecorder::write(HubItem item) {
-  if (closed_) throw internal_error("a closed capture cannot be written to");
+  if (closed_) throw data::internal_error("a closed capture cannot be written to");
   writer_->push(std::move(item));
   if (settings_.safe_after == 0) writer_->drain();
 }
@@ -199,4 +202,4 @@ void CaptureRecorder::close() {
   end_file();
 }
 
-}  // namespace crisp
+}  // namespace crisp::record

@@ -16,7 +16,7 @@
 #include "grabbers/capture/pcap_writer.hpp"
 #include "pipeline/data/batcher.hpp"
 
-namespace crisp {
+namespace crisp::record {
 
 /// A recording that crisp wrote can be written on; a file that came from elsewhere, or that the simulator
 /// wrote, stays as it is.
@@ -78,7 +78,7 @@ class CaptureRecorder {
   std::uint64_t recorded_ = 0;
   std::unique_ptr<File> file_;
   Clock::time_point safe_until_;  ///< what came before is on the disk
-  std::optional<Batcher<HubItem>> writer_;
+  std::optional<data::Batcher<HubItem>> writer_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::record

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace crisp {
+namespace crisp::record {
 
 void RecordStage::describe(StageDescription<RecordStage>& d) {
   d.name("write.capture").summary("records scans and encoder readings as a capture for grabber.capture");
@@ -80,4 +80,4 @@ void RecordStage::finish(Outputs&, Context& context) {
 
 void register_record(Registrar& registrar) { registrar.stage<RecordStage>(); }
 
-}  // namespace crisp
+}  // namespace crisp::record

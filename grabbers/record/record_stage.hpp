@@ -13,7 +13,7 @@
 
 #include "grabbers/record/capture_recorder.hpp"
 
-namespace crisp {
+namespace crisp::record {
 
 /// `write.capture`: records what was received, for `grabber.capture`.
 class RecordStage final : public Stage {
@@ -42,4 +42,4 @@ class RecordStage final : public Stage {
 /// The recorder's stage.
 void register_record(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::record

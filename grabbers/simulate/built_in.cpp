@@ -10,7 +10,7 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 std::vector<std::string> names_of(std::span<const BuiltIn> all) {
   std::vector<std::string> names;
@@ -23,7 +23,7 @@ std::string_view text_of(std::span<const BuiltIn> all, std::string_view kind, co
   if (found != all.end()) return found->yaml;
   const std::vector<std::string> names = names_of(all);
   throw Error(fmt::format("there is no {} '{}'", kind, name),
-              did_you_mean(name, names, fmt::format("known are {}", fmt::join(names, ", "))));
+              files::did_you_mean(name, names, fmt::format("known are {}", fmt::join(names, ", "))));
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A file of configs that came with crisp when it was built.
 struct BuiltIn {
@@ -23,4 +23,4 @@ std::vector<std::string> names_of(std::span<const BuiltIn> all);
 /// @throws Error for a name that is not there, with the nearest one
 std::string_view text_of(std::span<const BuiltIn> all, std::string_view kind, const std::string& name);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

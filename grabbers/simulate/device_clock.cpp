@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::simulate {
 
 std::size_t DeviceClock::resets_before(double hub_time) const {
   return static_cast<std::size_t>(std::upper_bound(resets.begin(), resets.end(), hub_time) - resets.begin());
@@ -21,4 +21,4 @@ std::uint32_t DeviceClock::microseconds(double hub_time) const {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(1e6 * seconds(hub_time))));
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

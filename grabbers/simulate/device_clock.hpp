@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Something becomes larger at an instant of the hub's time.
 struct Step {
@@ -30,4 +30,4 @@ struct DeviceClock {
   std::size_t resets_before(double hub_time) const;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

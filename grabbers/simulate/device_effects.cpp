@@ -5,7 +5,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 /// Target of an effect's parameter: a laser's settings, or those of any device.
@@ -137,4 +137,4 @@ void for_each_device_effect(const RecordingSettings& settings,
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

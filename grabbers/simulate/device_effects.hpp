@@ -8,7 +8,7 @@
 #include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The catalogue's effects that can be simulated in a recording: with telegrams, a clock's drift is a
 /// device's own, and so also the plate's. The scene's effects are in it, to be rejected with advice.
@@ -28,4 +28,4 @@ std::vector<Effect> apply_device_effects(std::vector<Effect> effects, RecordingS
 void for_each_device_effect(const RecordingSettings& settings,
                             const std::function<void(const std::string& name, double value)>& visit);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

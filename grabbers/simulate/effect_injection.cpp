@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/device_effects.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 /// A scan does not contain incidences, nor the surfaces that a wider spot would have met.
@@ -94,4 +94,4 @@ void EffectInjector::change_ranges(Scan& scan) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

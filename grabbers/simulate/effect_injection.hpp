@@ -11,7 +11,7 @@
 #include "grabbers/simulate/effects.hpp"
 #include "grabbers/simulate/recording_settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The catalogue's effects that can be injected into recorded scans, i.e. those of ranges and times.
 std::vector<EffectInfo> injectable_effects(const TermRegistry& terms);
@@ -48,4 +48,4 @@ class EffectInjector {
   std::int64_t first_ns_ = 0;        ///< receipt of the first
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -12,7 +12,7 @@
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/quantity.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 class Reader {
@@ -51,7 +51,7 @@ class Reader {
   std::string suggestion(const std::string& name) const {
     std::vector<std::string> names;
     for (const auto& info : catalogue_) names.push_back(info.name);
-    return did_you_mean(name, names, "`crisp effects` lists the effects");
+    return files::did_you_mean(name, names, "`crisp effects` lists the effects");
   }
 
   /// Splits the owner off a name that is no effect as a whole: effects may begin with "plate." themselves.
@@ -79,7 +79,7 @@ class Reader {
     devices.push_back(rig_.plate.name);
     const std::string owner = group.name.substr(0, dot);
     fail(group.place, fmt::format("{}: the rig has no '{}'", group.name, owner),
-         did_you_mean(owner, devices, fmt::format("it has {}", fmt::join(devices, ", "))));
+         files::did_you_mean(owner, devices, fmt::format("it has {}", fmt::join(devices, ", "))));
     return true;
   }
 
@@ -103,8 +103,8 @@ class Reader {
                   parameters_of(info));
     }
     const std::string name = info.name + "." + entry.name;
-    const auto parsed = parse_quantity(entry.value, parameter->unit);
-    if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
+    const auto parsed = files::parse_quantity(entry.value, parameter->unit);
+    if (const auto* complaint = std::get_if<files::Complaint>(&parsed)) {
       return fail(
           entry.place, name + ": " + complaint->text,
           parameter->unit == "1" ? "expected is a number" : "expected is a number in " + parameter->unit);
@@ -137,4 +137,4 @@ std::vector<Effect> read_effects(const OptionGroups& requested, const Rig& rig,
   return Reader(rig, catalogue).read(requested);
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -11,7 +11,7 @@
 #include <crisp/option.hpp>
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A requested effect of the catalogue.
 struct Effect {
@@ -33,4 +33,4 @@ struct Effect {
 std::vector<Effect> read_effects(const OptionGroups& requested, const Rig& rig,
                                  const std::vector<EffectInfo>& catalogue);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

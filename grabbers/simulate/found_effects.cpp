@@ -11,7 +11,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 /// Something that was found of one device, before it is known whether it can be simulated.
@@ -156,4 +156,4 @@ FoundEffects effects_of(const Findings& findings, const std::string& file, const
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

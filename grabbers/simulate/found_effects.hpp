@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/effects.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Findings of a diagnosis that can be simulated.
 struct FoundEffects {
@@ -27,4 +27,4 @@ struct FoundEffects {
 FoundEffects effects_of(const Findings& findings, const std::string& file, const Rig& rig,
                         const std::vector<EffectInfo>& catalogue);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -5,7 +5,7 @@
 
 #include "grabbers/simulate/scenario.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 void InjectStage::describe(StageDescription<InjectStage>& d) {
   d.name("simulate.inject").summary("injects known effects into recorded scans, to validate a diagnosis");
@@ -40,4 +40,4 @@ void InjectStage::process(const Inputs& in, Outputs& out, Context& context) {
   if (const auto scan = in.share<Scan>()) out.give(lasers_.at(scan->laser).changed(*scan));
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/effect_injection.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// `simulate.inject`: a known change in scans that were recorded, to see what a measure answers.
 class InjectStage final : public Stage {
@@ -24,4 +24,4 @@ class InjectStage final : public Stage {
   std::vector<EffectInjector> lasers_;  // of the rig
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

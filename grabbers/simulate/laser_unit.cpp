@@ -9,7 +9,7 @@
 
 #include "grabbers/wire/scan_conversion.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr double kTenThousandths = 1e4 * 180 / std::numbers::pi;  // [1/rad] angles on the wire: 1/10000°
@@ -29,15 +29,15 @@ void check_unit(const ScannerSettings& settings, const FieldOfView& field) {
   }
   const auto step = static_cast<std::uint16_t>(std::lround(field.step * kTenThousandths));
   const double first = std::round(field.first * kTenThousandths) / kTenThousandths;
-  if (std::abs(exact_angle_step(step) - field.step) > kRounding ||
+  if (std::abs(wire::exact_angle_step(step) - field.step) > kRounding ||
       std::abs(first - field.first) > kRounding) {
     throw Error("a laser's telegrams cannot hold the angles of this field of view",
                 "use whole 1/10000° or fractions like 1/3°");
   }
 }
 
-ChannelBlock channel(const char* name, const FieldOfView& field, std::size_t values) {
-  ChannelBlock block;
+wire::ChannelBlock channel(const char* name, const FieldOfView& field, std::size_t values) {
+  wire::ChannelBlock block;
   block.name = name;
   block.start_angle = static_cast<std::int32_t>(std::lround(field.first * kTenThousandths));
   block.angle_step = static_cast<std::uint16_t>(std::lround(field.step * kTenThousandths));
@@ -59,7 +59,7 @@ LaserUnit::LaserUnit(const RecordingSettings& settings, const RecordingTruth& tr
       handover_(settings.scanner.seed, rig_.name + ".handover"),
       losses_(settings.scanner.seed, rig_.name + ".losses") {
   check_unit(settings.scanner, pattern_.field);
-  RandomStream random(settings.scanner.seed, rig_.name + ".counters");
+  statistics::RandomStream random(settings.scanner.seed, rig_.name + ".counters");
   scan_counter_ = static_cast<std::uint16_t>(random.bits());
   counter_difference_ = static_cast<std::uint16_t>(random.bits() % 512);
 }
@@ -87,7 +87,7 @@ double LaserUnit::stamp_of(const Sweep& sweep) const {
          truth_.stamp_lag;
 }
 
-void LaserUnit::fill_header(ScanData& data, const Sweep& sweep, double sent) {
+void LaserUnit::fill_header(wire::ScanData& data, const Sweep& sweep, double sent) {
   if (const auto restarts = truth_.clock.resets_before(sent); restarts != restarts_) {
     restarts_ = restarts;
     scan_counter_ = 0;
@@ -105,14 +105,14 @@ void LaserUnit::fill_header(ScanData& data, const Sweep& sweep, double sent) {
       static_cast<std::uint32_t>(std::lround(pattern_.frequency * beams_a_turn / 100));
 }
 
-void LaserUnit::fill_channels(ScanData& data, const Sweep& sweep) const {
-  ChannelBlock distances = channel("DIST1", pattern_.field, sweep.ranges.size());
+void LaserUnit::fill_channels(wire::ScanData& data, const Sweep& sweep) const {
+  wire::ChannelBlock distances = channel("DIST1", pattern_.field, sweep.ranges.size());
   for (const float range : sweep.ranges) {
     distances.raw.push_back(static_cast<std::uint16_t>(std::lround(range * kMillimetres)));
   }
   data.channels16.push_back(std::move(distances));
   if (settings_.telegrams.remission == RemissionChannel::none) return;
-  ChannelBlock remissions = channel("RSSI1", pattern_.field, sweep.remissions.size());
+  wire::ChannelBlock remissions = channel("RSSI1", pattern_.field, sweep.remissions.size());
   for (const float remission : sweep.remissions) {
     remissions.raw.push_back(static_cast<std::uint16_t>(remission));
   }
@@ -120,4 +120,4 @@ void LaserUnit::fill_channels(ScanData& data, const Sweep& sweep) const {
   (wide ? data.channels16 : data.channels8).push_back(std::move(remissions));
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

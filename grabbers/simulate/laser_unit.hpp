@@ -10,13 +10,13 @@
 #include "grabbers/wire/scan_data.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A telegram as it reached the hub.
 struct LaserTelegram {
   std::uint16_t laser = 0;      ///< index in the rig
   std::int64_t receipt_ns = 0;  ///< [ns since the Unix epoch] hub time at which it was complete
-  ScanData data;
+  wire::ScanData data;
 };
 
 /// One laser as a device: stamps its sweeps with its own clock, counts them, and sends them as telegrams.
@@ -32,8 +32,8 @@ class LaserUnit {
   double stamp_of(const Sweep& sweep) const;
 
  private:
-  void fill_header(ScanData& data, const Sweep& sweep, double sent);
-  void fill_channels(ScanData& data, const Sweep& sweep) const;
+  void fill_header(wire::ScanData& data, const Sweep& sweep, double sent);
+  void fill_channels(wire::ScanData& data, const Sweep& sweep) const;
 
   RecordingSettings settings_;
   DeviceTruth truth_;
@@ -41,12 +41,12 @@ class LaserUnit {
   ScanPattern pattern_;
   std::uint16_t index_;
   Link link_;
-  RandomStream handover_;
-  RandomStream losses_;
+  statistics::RandomStream handover_;
+  statistics::RandomStream losses_;
   std::uint16_t scan_counter_ = 0;
   std::uint16_t counter_difference_ = 0;  ///< telegram counter − scan counter
   std::size_t restarts_ = 0;
   unsigned scans_since_start_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -9,7 +9,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 
 LinkSettings with_bursts(LinkSettings link, const BurstSettings& bursts) {
   if (!(bursts.interval > 0 && bursts.wait > 0)) {
@@ -70,4 +70,4 @@ double Link::arrival(double sent, std::size_t bytes) {
   return last_arrival_;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

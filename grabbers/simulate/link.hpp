@@ -7,7 +7,7 @@
 #include "grabbers/simulate/device_clock.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// How long a telegram travels from a device to the hub's network interface.
 struct LinkSettings {
@@ -49,11 +49,11 @@ class Link {
   double minimum_;
   double scale_;  // [s] of the jitter's law
   Step step_;
-  RandomStream jitter_;
-  RandomStream stalls_;
+  statistics::RandomStream jitter_;
+  statistics::RandomStream stalls_;
   double stall_begin_ = 0;
   double stall_end_ = 0;
   double last_arrival_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -6,7 +6,7 @@
 #include "grabbers/simulate/sweep.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr double kMargin = 0.25;                            // [s] of encoder readings beyond the beams
@@ -39,7 +39,7 @@ void append(SimulatedMeasurements& result, const Sweep& sweep, const ScannerSett
     }
     to.range.push_back(sweep.ranges[i]);
     to.mirror_angle.push_back(
-        static_cast<float>(wrapped_mirror_angle(field.angle_of(sweep.beams[i]) - mount)));
+        static_cast<float>(data::wrapped_mirror_angle(field.angle_of(sweep.beams[i]) - mount)));
     to.time.push_back(sweep.times[i] - eta);
     to.laser.push_back(sweep.laser);
     to.remission.push_back(sweep.remissions[i]);
@@ -72,4 +72,4 @@ SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, con
                                make_motion(settings.motion, settings.duration, settings.seed), terms);
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

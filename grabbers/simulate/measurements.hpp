@@ -14,7 +14,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A recording's measurements with perfectly aligned clocks.
 struct SimulatedMeasurements {
@@ -39,4 +39,4 @@ SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, con
 SimulatedMeasurements simulate_measurements(const ScannerSettings& settings, const Scene& scene,
                                             const Motion& motion, const TermRegistry& terms = {});
 
-}  // namespace crisp
+}  // namespace crisp::simulate

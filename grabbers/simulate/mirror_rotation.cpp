@@ -8,7 +8,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 
 Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::string& laser, double excess)
     : settings_(settings), jitter_(seed, laser + ".mirror.jitter") {
@@ -22,7 +22,7 @@ Mirror::Mirror(const MirrorSettings& settings, std::uint64_t seed, const std::st
                 "reduce mirror_slowest, mirror_wander, mirror_jitter or the effect mirror.period");
   }
   constexpr double kTurn = 2 * std::numbers::pi;
-  RandomStream random(seed, laser + ".mirror");
+  statistics::RandomStream random(seed, laser + ".mirror");
   time_ = random.uniform() / settings.frequency;
   slowness_ = random.uniform(0, settings.slowest);
   if (excess != 0) slowness_ = excess * settings.frequency;
@@ -48,4 +48,4 @@ Revolution Mirror::next() {
   return revolution;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Motion of a laser's mirror: real units are up to 0.6 % slow and wander by 0.2 % within seconds.
 struct MirrorSettings {
@@ -45,10 +45,10 @@ class Mirror {
 
   MirrorSettings settings_;
   double slowness_ = 0;
-  RandomStream jitter_;
+  statistics::RandomStream jitter_;
   std::array<Wave, kWaves> waves_{};
   double time_ = 0;
   std::uint64_t number_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

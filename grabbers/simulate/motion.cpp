@@ -12,7 +12,7 @@
 #include "pipeline/data/internal_error.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -22,7 +22,7 @@ double smooth_step_integral(double u) { return u * u * u * (1 - u / 2); }
 
 using Knots = std::vector<Motion::Knot>;
 
-Knots varying(const MotionSettings& settings, double duration, RandomStream& random) {
+Knots varying(const MotionSettings& settings, double duration, statistics::RandomStream& random) {
   Knots knots;
   for (double t = 0; knots.size() < 2 || knots.back().time < duration;) {
     knots.push_back({t, kTurn * random.uniform(settings.min_rate, settings.max_rate)});
@@ -101,7 +101,7 @@ std::optional<PlateState> Motion::at(double t) const {
 
 Motion make_motion(const MotionSettings& settings, double duration, std::uint64_t seed) {
   check(settings, duration);
-  RandomStream random(seed, "plate.motion");
+  statistics::RandomStream random(seed, "plate.motion");
   const double first_angle = random.uniform(0, kTurn);
   switch (settings.kind) {
     case MotionKind::constant:
@@ -113,7 +113,7 @@ Motion make_motion(const MotionSettings& settings, double duration, std::uint64_
     case MotionKind::stop_and_go:
       return Motion(alternating(settings, duration, 0, settings.max_rate), first_angle);
   }
-  throw internal_error("the motion of the plate is of no known kind");
+  throw data::internal_error("the motion of the plate is of no known kind");
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -7,7 +7,7 @@
 
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Motion of the plate.
 enum class MotionKind {
@@ -51,4 +51,4 @@ class Motion {
 /// @throws Error if a rate, time or duration makes no sense
 Motion make_motion(const MotionSettings& settings, double duration, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

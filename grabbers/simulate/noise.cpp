@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 bool is_share(double value) { return value >= 0 && value <= 1; }
@@ -62,9 +62,9 @@ RangeNoise::Draw RangeNoise::draw(std::uint16_t beam) {
   return draw;
 }
 
-double RangeNoise::reported(const EchoConditions& echo, const Draw& draw) const {
-  const double noisy = echo.range + draw.shift + deviation(sizes_, echo) * draw.normal;
+double RangeNoise::reported(const model::EchoConditions& echo, const Draw& draw) const {
+  const double noisy = echo.range + draw.shift + model::deviation(sizes_, echo) * draw.normal;
   return quantum_ > 0 ? quantum_ * std::round(noisy / quantum_) : noisy;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -9,7 +9,7 @@
 #include "pipeline/model/range_variance.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A laser's range measurement of a true distance. The defaults are those of the LMS-151's data sheet.
 struct RangeSettings {
@@ -53,19 +53,19 @@ class RangeNoise {
   Draw draw(std::uint16_t beam);
 
   /// The range [m] that is reported for an echo of `echo.range`.
-  double reported(const EchoConditions& echo, const Draw& draw) const;
+  double reported(const model::EchoConditions& echo, const Draw& draw) const;
 
  private:
   double weight_of(std::uint16_t beam);
 
-  ByPart sizes_;
+  model::ByPart sizes_;
   double quantum_;
   NoiseEffects effects_;
-  RandomStream normal_;
-  RandomStream tail_;
-  RandomStream peak_;
-  RandomStream weight_;
+  statistics::RandomStream normal_;
+  statistics::RandomStream tail_;
+  statistics::RandomStream peak_;
+  statistics::RandomStream weight_;
   std::vector<double> weights_;  ///< by beam as far as one was drawn, of the farther peak
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -9,7 +9,7 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 /// The term's parameters in this list, added with neutral values if need be.
@@ -45,7 +45,7 @@ Calibration draw_truth(const Calibration& nominal, const NominalErrors& nominal_
   Calibration truth = nominal;
   for (std::size_t i = 0; i < truth.lasers.size(); ++i) {
     auto& laser = truth.lasers[i];
-    RandomStream random(seed, laser.name + ".truth");
+    statistics::RandomStream random(seed, laser.name + ".truth");
     laser.tau.value += random.uniform(-nominal_errors.tau, nominal_errors.tau);
     laser.alpha.value += random.uniform(-nominal_errors.alpha, nominal_errors.alpha);
     laser.eta.value += random.uniform(-nominal_errors.eta, nominal_errors.eta);
@@ -74,4 +74,4 @@ void add_terms(Calibration& truth, const std::vector<Effect>& effects, const Ter
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

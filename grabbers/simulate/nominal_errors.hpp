@@ -9,7 +9,7 @@
 
 #include "grabbers/simulate/effects.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Largest deviations of the true parameters from the nominal ones.
 struct NominalErrors {
@@ -29,4 +29,4 @@ Calibration draw_truth(const Calibration& nominal, const NominalErrors& nominal_
 /// @throws Error for an effect that is no term
 void add_terms(Calibration& truth, const std::vector<Effect>& effects, const TermRegistry& terms);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

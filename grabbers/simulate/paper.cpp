@@ -3,7 +3,7 @@
 
 #include "grabbers/simulate/shapes.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 Scene paper_room() {
   return {
@@ -19,4 +19,4 @@ ScannerSettings paper_scanner(std::uint64_t seed) {
   return settings;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

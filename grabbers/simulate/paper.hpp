@@ -6,7 +6,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The room of the Monte Carlo of Sheehan, Harrison and Newman, section 5.2, as far as it is described: two
 /// dimensions, so upright walls only; some 9 × 7 m with a bay, so that it differs from every side.
@@ -16,4 +16,4 @@ Scene paper_room();
 /// (reported at −45° and 135°), the plate's rate between 0 and 2 Hz for ten seconds: about ten revolutions.
 ScannerSettings paper_scanner(std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

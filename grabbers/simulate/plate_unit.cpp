@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr std::size_t kSentenceBytes = 40;  // about
@@ -20,8 +20,8 @@ PlateUnit::PlateUnit(const RecordingSettings& settings, const RecordingTruth& tr
       begin_(begin),
       time_(begin) {
   check_plate_frequency(settings.scanner);
-  sequence_ =
-      static_cast<std::uint16_t>(RandomStream(settings.scanner.seed, truth_.name + ".counters").bits());
+  sequence_ = static_cast<std::uint16_t>(
+      statistics::RandomStream(settings.scanner.seed, truth_.name + ".counters").bits());
 }
 
 std::optional<PlateReading> PlateUnit::send() {
@@ -43,4 +43,4 @@ std::optional<PlateReading> PlateUnit::send() {
   return reading;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -11,7 +11,7 @@
 #include "grabbers/simulate/recording_settings.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The plate's encoder as a device: reads it at a steady rate of its own clock and reports each reading.
 class PlateUnit {
@@ -32,7 +32,7 @@ class PlateUnit {
   DeviceTruth truth_;
   const Motion* motion_;
   Link link_;
-  RandomStream losses_;
+  statistics::RandomStream losses_;
   double begin_;
   double time_;
   std::uint64_t readings_ = 0;
@@ -40,4 +40,4 @@ class PlateUnit {
   std::size_t restarts_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

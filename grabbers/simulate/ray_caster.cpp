@@ -8,7 +8,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 using Eigen::Vector3d;
@@ -135,7 +135,7 @@ RayCaster::RayCaster(const Scene& scene) : bodies_(scene.bodies) {
   for (const auto& body : bodies_) {
     check(body.shape, body.name);
     (body.walk.moves() ? moving_ : order_).push_back(static_cast<std::uint32_t>(bounds.size()));
-    bounds.push_back(crisp::bounds(body.shape));
+    bounds.push_back(simulate::bounds(body.shape));
   }
   if (!order_.empty()) split(0, static_cast<std::uint32_t>(order_.size()), bounds);
 }
@@ -235,4 +235,4 @@ double RayCaster::distance(const Vector3d& point) const {
   return nearest;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

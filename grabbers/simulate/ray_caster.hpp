@@ -10,7 +10,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// First intersection of a ray with the scene.
 struct Hit {
@@ -22,8 +22,9 @@ struct Hit {
 
 /// Data that differ from one shot of a beam to the next.
 struct Shot {
-  double time = 0;                 ///< [s] true time, for what moves
-  RandomStream* chance = nullptr;  ///< draws how far the beam gets into foliage; none: as far as in the mean
+  double time = 0;  ///< [s] true time, for what moves
+  statistics::RandomStream* chance =
+      nullptr;  ///< draws how far the beam gets into foliage; none: as far as in the mean
 };
 
 /// Answers what a ray hits and how far a point is from the surfaces, by a tree of bounding boxes.
@@ -72,4 +73,4 @@ class RayCaster {
   std::vector<Node> nodes_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -10,20 +10,20 @@
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/option_yaml.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 /// `crisp: 1` and `effects`, written as in the option of that name, without owners.
 OptionGroups habits_of(const std::string& device) {
   const std::string file = device + ".yaml";
-  const YamlNode root = parse_yaml(text_of(device_texts(), "device", device), file);
+  const files::YamlNode root = files::parse_yaml(text_of(device_texts(), "device", device), file);
   std::vector<Error> errors;
-  YamlMap map(root, "device", errors);
-  check_schema(map, 1);
+  files::YamlMap map(root, "device", errors);
+  files::check_schema(map, 1);
   OptionGroups habits;
-  if (const YamlNode* effects = map.require("effects")) {
+  if (const files::YamlNode* effects = map.require("effects")) {
     const Option option{.name = "effects", .type = OptionType::groups};
-    if (const auto read = read_option(option, *effects, file, {}, errors))
+    if (const auto read = stage::read_option(option, *effects, file, {}, errors))
       habits = std::get<OptionGroups>(*read);
   }
   map.refuse_others();
@@ -70,4 +70,4 @@ std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& requ
   return effects;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

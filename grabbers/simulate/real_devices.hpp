@@ -6,7 +6,7 @@
 
 #include "grabbers/simulate/effects.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Names of the real devices whose habits come with crisp: those of configs/devices, when it was built.
 const std::vector<std::string>& real_devices();
@@ -21,4 +21,4 @@ const std::vector<std::string>& real_devices();
 std::vector<Effect> effects_of_real_devices(const std::vector<std::string>& requested, const Rig& rig,
                                             const std::vector<EffectInfo>& catalogue);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

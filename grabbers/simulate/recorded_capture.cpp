@@ -7,7 +7,7 @@
 
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -16,7 +16,7 @@ constexpr std::size_t kHeaders = 54;  // Ethernet, IPv4 and TCP: damage behind t
 
 }  // namespace
 
-FaultyWire::FaultyWire(const WireFaults& faults, std::uint64_t seed, FrameSink sink)
+FaultyWire::FaultyWire(const WireFaults& faults, std::uint64_t seed, capture::FrameSink sink)
     : faults_(faults), random_(seed, "wire"), sink_(std::move(sink)) {
   for (const double share : {faults.lost, faults.repeated, faults.damaged}) {
     if (!(share >= 0 && share <= 1)) {
@@ -26,7 +26,7 @@ FaultyWire::FaultyWire(const WireFaults& faults, std::uint64_t seed, FrameSink s
   }
 }
 
-void FaultyWire::push(std::int64_t time_ns, ByteView frame) {
+void FaultyWire::push(std::int64_t time_ns, wire::ByteView frame) {
   const bool lost = random_.chance(faults_.lost);
   const bool repeated = random_.chance(faults_.repeated);
   const bool damaged = random_.chance(faults_.damaged) && frame.size() > kHeaders;
@@ -42,7 +42,7 @@ void FaultyWire::push(std::int64_t time_ns, ByteView frame) {
   }
   if (!damaged) return sink_(time_ns, frame);
   ++counts_.damaged;
-  Bytes bytes(frame.begin(), frame.end());
+  wire::Bytes bytes(frame.begin(), frame.end());
   const auto bit = random_.bits() % ((bytes.size() - kHeaders) * 8);
   bytes[kHeaders + bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
   sink_(time_ns, bytes);
@@ -52,18 +52,18 @@ RecordedCapture::RecordedCapture(std::filesystem::path path, RecordingSettings s
                                  const WireFaults& faults)
     : settings_(std::move(settings)),
       truth_(std::move(truth)),
-      file_(std::move(path), PcapMode::Replace),
+      file_(std::move(path), capture::PcapMode::Replace),
       sorter_(
-          [this](std::int64_t ns, ByteView frame) {
-            Bytes simulated(frame.begin(), frame.end());
-            mark_as_simulated(simulated);
+          [this](std::int64_t ns, wire::ByteView frame) {
+            wire::Bytes simulated(frame.begin(), frame.end());
+            capture::mark_as_simulated(simulated);
             file_.write(ns, simulated);
           },
           kHold),
       wire_(faults, settings_.scanner.seed,
-            [this](std::int64_t ns, ByteView frame) { sorter_.push(ns, frame); }),
+            [this](std::int64_t ns, wire::ByteView frame) { sorter_.push(ns, frame); }),
       hub_(settings_.scanner.rig, settings_.telegrams.language,
-           [this](std::int64_t ns, ByteView frame) { wire_.push(ns, frame); }),
+           [this](std::int64_t ns, wire::ByteView frame) { wire_.push(ns, frame); }),
       restarts_(settings_.scanner.rig.lasers.size()) {
   constexpr std::int64_t kBefore = 200 * kMillisecond;  // the encoder readings begin 100 ms before time 0
   for (std::size_t i = 0; i < restarts_.size(); ++i) {
@@ -84,7 +84,7 @@ void RecordedCapture::write(const LaserTelegram& telegram) {
     restarts_[telegram.laser] = restarts;
     hub_.connect(telegram.laser, telegram.receipt_ns - 5 * kMillisecond);
   }
-  hub_.telegram(telegram.laser, encode_scan_data(telegram.data, settings_.telegrams.language),
+  hub_.telegram(telegram.laser, wire::encode_scan_data(telegram.data, settings_.telegrams.language),
                 telegram.receipt_ns);
 }
 
@@ -96,4 +96,4 @@ void RecordedCapture::close() {
   file_.close();
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

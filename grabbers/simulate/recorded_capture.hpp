@@ -10,7 +10,7 @@
 #include "grabbers/simulate/recording.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Faults of frames between the devices and the file.
 struct WireFaults {
@@ -29,15 +29,15 @@ class FaultyWire {
   };
 
   /// @throws Error if a share is not between 0 and 1
-  FaultyWire(const WireFaults& faults, std::uint64_t seed, FrameSink sink);
+  FaultyWire(const WireFaults& faults, std::uint64_t seed, capture::FrameSink sink);
 
-  void push(std::int64_t time_ns, ByteView frame);
+  void push(std::int64_t time_ns, wire::ByteView frame);
   const Counts& counts() const { return counts_; }
 
  private:
   WireFaults faults_;
-  RandomStream random_;
-  FrameSink sink_;
+  statistics::RandomStream random_;
+  capture::FrameSink sink_;
   Counts counts_;
 };
 
@@ -63,12 +63,12 @@ class RecordedCapture {
 
   RecordingSettings settings_;
   RecordingTruth truth_;
-  PcapWriter file_;
-  FrameSorter sorter_;
+  capture::PcapWriter file_;
+  capture::FrameSorter sorter_;
   FaultyWire wire_;
-  HubTrafficEncoder hub_;
+  capture::HubTrafficEncoder hub_;
   std::vector<std::size_t> restarts_;  ///< of each laser
   std::int64_t latest_ns_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

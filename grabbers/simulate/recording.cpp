@@ -7,7 +7,7 @@
 #include "grabbers/wire/scan_conversion.hpp"
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr double kPlateMargin = 0.1;  // [s] of readings before the first and after the last sweep
@@ -50,7 +50,7 @@ PlateReading RecordingSimulator::count_into(LaserTelegram& telegram) const {
                          truth_.lasers[telegram.laser].minimum_delay - truth_.plate.minimum_delay;
   const double angle = motion_.at(latched).value_or(PlateState{}).angle;
   const double step = settings_.scanner.rig.plate.angle_per_count();
-  ScanData& data = telegram.data;
+  wire::ScanData& data = telegram.data;
   data.encoders = {{.position = static_cast<std::uint32_t>(std::llround(angle / step))}};
   return {.sequence = data.telegram_counter,
           .device_us = data.scan_time_us,
@@ -89,9 +89,9 @@ double RecordingSimulator::progress() const {
 Scan to_scan(const LaserTelegram& telegram) {
   Scan scan;
   const auto failure = to_scan(telegram.data, telegram.laser, telegram.receipt_ns, scan);
-  if (failure != ScanFailure::None) {
-    throw internal_error("the simulator made a telegram that holds no scan: " +
-                         std::string(to_string(failure)));
+  if (failure != wire::ScanFailure::None) {
+    throw data::internal_error("the simulator made a telegram that holds no scan: " +
+                               std::string(wire::to_string(failure)));
   }
   return scan;
 }
@@ -110,4 +110,4 @@ SimulatedRecording simulate_recording(const RecordingSettings& settings, const S
   return recording;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -15,7 +15,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/sweep.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// An item received by the hub: one telegram of a laser or one encoder reading.
 using HubEvent = std::variant<LaserTelegram, PlateReading>;
@@ -55,8 +55,8 @@ class RecordingSimulator {
   Sweep upcoming_;
   std::vector<LaserUnit> lasers_;
   PlateUnit plate_;
-  ReorderBuffer<HubEvent> in_flight_;  ///< by receipt
-  double now_ = 0;                     ///< [s] nothing is sent before it any more
+  capture::ReorderBuffer<HubEvent> in_flight_;  ///< by receipt
+  double now_ = 0;                              ///< [s] nothing is sent before it any more
 };
 
 /// The scans and readings of a whole recording.
@@ -73,4 +73,4 @@ SimulatedRecording simulate_recording(const RecordingSettings& settings, const S
 /// The scan of a telegram, as a capture's reader makes it.
 Scan to_scan(const LaserTelegram& telegram);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -11,7 +11,7 @@
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr double kWrap = 4294.967296;  // [s] of a 32-bit counter of microseconds
@@ -22,7 +22,7 @@ DeviceTruth draw_device(const RecordingSettings& settings, std::size_t index, co
   if (!settings.clock_overrides.empty()) {
     device.clock = settings.clock_overrides[index];
   } else {
-    RandomStream random(settings.scanner.seed, name + ".clock");
+    statistics::RandomStream random(settings.scanner.seed, name + ".clock");
     device.clock.start = random.uniform(0, kWrap);
     device.clock.skew = random.uniform(-settings.clocks.skew, settings.clocks.skew);
     device.clock.drift = random.uniform(-settings.clocks.drift, settings.clocks.drift);
@@ -53,7 +53,7 @@ void check_names(const RecordingSettings& settings) {
   const auto check = [&](const std::string& name) {
     if (std::ranges::find(names, name) != names.end()) return;
     throw Error("a fault is set for the device '" + name + "', which the rig does not have",
-                did_you_mean(name, names, fmt::format("it has {}", fmt::join(names, ", "))));
+                files::did_you_mean(name, names, fmt::format("it has {}", fmt::join(names, ", "))));
   };
   for (const auto& silence : settings.faults.silences) check(silence.device);
   for (const auto& restart : settings.faults.restarts) check(restart.device);
@@ -112,4 +112,4 @@ RecordingTruth draw_devices(const RecordingSettings& settings) {
   return truth;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -12,7 +12,7 @@
 #include "grabbers/simulate/settings.hpp"
 #include "grabbers/wire/cola.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Distribution of the devices' clocks: each starts anywhere within its 32 bits.
 struct ClockSettings {
@@ -108,4 +108,4 @@ struct RecordingTruth {
 /// @throws Error if the settings make no sense
 RecordingTruth draw_devices(const RecordingSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -15,7 +15,7 @@
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/quantity.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 struct Key {
@@ -35,11 +35,11 @@ void read_entry(const OptionGroup& laser, const OptionGroup::Entry& entry, ScanP
     std::vector<std::string> names;
     for (const Key& known : kKeys) names.emplace_back(known.name);
     throw Error(fmt::format("{} has no '{}'", laser.name, entry.name),
-                did_you_mean(entry.name, names, fmt::format("it has {}", fmt::join(names, ", "))),
+                files::did_you_mean(entry.name, names, fmt::format("it has {}", fmt::join(names, ", "))),
                 entry.place);
   }
-  const auto parsed = parse_quantity(entry.value, key->unit);
-  if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
+  const auto parsed = files::parse_quantity(entry.value, key->unit);
+  if (const auto* complaint = std::get_if<files::Complaint>(&parsed)) {
     throw Error(fmt::format("{}.{}: {}", laser.name, entry.name, complaint->text),
                 fmt::format("expected is a number in {}", key->unit), entry.place);
   }
@@ -52,7 +52,8 @@ ScanPattern& pattern_named(const OptionGroup& laser, const Rig& rig, std::vector
   std::vector<std::string> names;
   for (const RigLaser& known : rig.lasers) names.push_back(known.name);
   throw Error(fmt::format("the rig has no laser '{}'", laser.name),
-              did_you_mean(laser.name, names, fmt::format("it has {}", fmt::join(names, ", "))), laser.place);
+              files::did_you_mean(laser.name, names, fmt::format("it has {}", fmt::join(names, ", "))),
+              laser.place);
 }
 
 void check(const OptionGroup& laser, const ScanPattern& pattern) {
@@ -87,4 +88,4 @@ std::vector<ScanPattern> read_patterns(const OptionGroups& lasers, const Rig& ri
   return patterns;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Understands a map of lasers: `{laser2: {first_angle: -5deg, last_angle: 185deg, step: 0.25deg,
 /// mirror_frequency: 25Hz}}`.
@@ -20,4 +20,4 @@ namespace crisp {
 std::vector<ScanPattern> read_patterns(const OptionGroups& lasers, const Rig& rig,
                                        const ScanPattern& otherwise);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -20,7 +20,7 @@
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/model/term_faults.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 void check_lasers(const Calibration& truth, const Rig& rig, const std::filesystem::path& file) {
@@ -46,7 +46,7 @@ Calibration TruthChoice::drawn(const RunSettings& run, std::uint64_t seed) const
 
 Calibration TruthChoice::load(Context& context, std::uint64_t seed) const {
   if (calibration_file.empty()) return drawn(context.run(), seed);
-  Calibration truth = read_calibration(calibration_file, judge_by(known_terms(context.run())),
+  Calibration truth = read_calibration(calibration_file, model::judge_by(known_terms(context.run())),
                                        [&](const Error& old) { context.warn(old.what()); });
   context.reads(calibration_file);
   check_lasers(truth, context.rig(), calibration_file);
@@ -62,7 +62,8 @@ void KindChoice::apply(ScannerSettings& scanner) const {
 std::vector<Effect> RealismChoice::load(const std::vector<EffectInfo>& catalogue, Context& context) const {
   std::vector<Effect> effects = effects_of_real_devices(devices, context.rig(), catalogue);
   if (findings_file.empty()) return effects;
-  const Findings findings = read_findings(findings_file, [&](const Error& old) { context.warn(old.what()); });
+  const Findings findings =
+      files::read_findings(findings_file, [&](const Error& old) { context.warn(old.what()); });
   context.reads(findings_file);
   FoundEffects found = effects_of(findings, findings_file.string(), context.rig(), catalogue);
   if (!found.others.empty()) {
@@ -78,4 +79,4 @@ const TermRegistry& known_terms(const RunSettings& run) {
   return run.registrar ? run.registrar->get<TermRegistry>() : none;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -13,7 +13,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "grabbers/simulate/settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Which scene a stage simulates.
 struct SceneChoice {
@@ -64,4 +64,4 @@ struct RealismChoice {
 /// The terms that the program knows; none where a stage is run without one.
 const TermRegistry& known_terms(const RunSettings& run);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

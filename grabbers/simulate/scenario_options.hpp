@@ -12,7 +12,7 @@
 #include "grabbers/simulate/scenario.hpp"
 #include "grabbers/simulate/settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// @param way  to a SceneChoice
 template <class S, class Way>
@@ -116,4 +116,4 @@ void describe_field(StageDescription<S>& d, Way way) {
       .range(0, 0.01);
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

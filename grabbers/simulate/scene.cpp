@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::simulate {
 
 Eigen::Vector3d Walk::at(double time) const {
   if (!moves()) return Eigen::Vector3d::Zero();
@@ -19,4 +19,4 @@ Eigen::Vector3d Walk::at(double time) const {
   return along.back();
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

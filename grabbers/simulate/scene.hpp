@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/solid.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A flat piece of the world, seen from both sides.
 struct Surface {
@@ -54,4 +54,4 @@ struct Scene {
   }
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -14,10 +14,12 @@
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 using Eigen::Vector3d;
+using files::YamlMap;
+using files::YamlNode;
 
 constexpr std::size_t kMaxSurfaces = 200'000;  // of all shapes together, so that memory stays bounded
 constexpr std::int64_t kMaxCopies = 10'000;
@@ -33,7 +35,7 @@ class SceneReader {
  public:
   Scene read(const YamlNode& root) {
     YamlMap map(root, "scene", errors_);
-    check_schema(map, 1);
+    files::check_schema(map, 1);
     const std::string name = map.text("name", "scene");
     if (const YamlNode* shapes = map.find("shapes")) read_shapes(*shapes);
     if (const YamlNode* scanner = map.require("scanner")) stand_ = read_stand(*scanner);
@@ -65,7 +67,7 @@ class SceneReader {
   Scene read_items(const YamlNode& node, const std::string& what) {
     Scene scene;
     if (node.kind != YamlNode::Kind::sequence) {
-      fail(node.place, what + ": " + crisp::describe(node) + " is not a list of surfaces",
+      fail(node.place, what + ": " + files::describe(node) + " is not a list of surfaces",
            "begin the line of each surface with '- '");
     }
     for (const auto& item : node.items) {
@@ -174,7 +176,7 @@ class SceneReader {
            "give 0.0001 <= smallest <= largest");
       return scene;
     }
-    RandomStream random(seed, "strew");
+    statistics::RandomStream random(seed, "strew");
     Scene all;
     for (std::size_t i = 0; i < count; ++i) {
       const auto where = place_in(from, to, clear, random);
@@ -193,7 +195,7 @@ class SceneReader {
 
   /// A place in the region that is so far from the scanner, seen from above.
   std::optional<Vector3d> place_in(const Vector3d& from, const Vector3d& to, double clear,
-                                   RandomStream& random) const {
+                                   statistics::RandomStream& random) const {
     constexpr int kTries = 1000;
     for (int k = 0; k < kTries; ++k) {
       Vector3d where;
@@ -216,7 +218,7 @@ class SceneReader {
   void check(const Scene& scene, const Place& place) {
     try {
       for (const auto& surface : scene.surfaces) RayCaster(Scene{.name = "", .surfaces = {surface}});
-      for (const auto& body : scene.bodies) crisp::check(body.shape, body.name);
+      for (const auto& body : scene.bodies) simulate::check(body.shape, body.name);
     } catch (const Error& error) {
       fail(place, error.message(), error.advice());
     }
@@ -236,6 +238,6 @@ class SceneReader {
 
 Scene parse_scene(const YamlNode& root) { return SceneReader().read(root); }
 
-Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_yaml(file)); }
+Scene read_scene(const std::filesystem::path& file) { return parse_scene(files::read_yaml(file)); }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -10,10 +10,12 @@
 #include "grabbers/simulate/shapes.hpp"
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 using Eigen::Vector3d;
+using files::YamlMap;
+using files::YamlNode;
 using ErrorList = std::vector<Error>;
 
 Scene one(Body body) { return {.name = "", .surfaces = {}, .bodies = {std::move(body)}}; }
@@ -100,7 +102,7 @@ Scene read_shape(YamlMap& item, const YamlNode& node, const std::map<std::string
   std::vector<std::string> known;
   for (const auto& [other, things] : shapes) known.push_back(other);
   item.fail(node.place, "there is no shape '" + name + "'",
-            did_you_mean(name, known, "describe it under shapes, before it is used"));
+            files::did_you_mean(name, known, "describe it under shapes, before it is used"));
   return {};
 }
 
@@ -129,4 +131,4 @@ Scene read_geometry(YamlMap& item, const Place& place, const std::map<std::strin
   return things;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -8,7 +8,7 @@
 #include "grabbers/simulate/scene.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Geometry of an item of a scene's file: the one box, rectangle, polygon, run of walls, cylinder, sphere,
 /// ellipsoid or shape that it names. Boxes are six flat surfaces, or one body if the item is foliage or
@@ -16,7 +16,7 @@ namespace crisp {
 ///
 /// @param shapes  described before, by name
 /// @param errors  receives the errors
-Scene read_geometry(YamlMap& item, const Place& place, const std::map<std::string, Scene>& shapes,
+Scene read_geometry(files::YamlMap& item, const Place& place, const std::map<std::string, Scene>& shapes,
                     std::vector<Error>& errors);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -4,7 +4,7 @@
 #include "grabbers/simulate/built_in.hpp"
 #include "grabbers/simulate/scene_file.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 const std::vector<std::string>& built_in_scenes() {
   static const std::vector<std::string> kNames = names_of(scene_texts());
@@ -12,7 +12,7 @@ const std::vector<std::string>& built_in_scenes() {
 }
 
 Scene built_in_scene(const std::string& name) {
-  return parse_scene(parse_yaml(text_of(scene_texts(), "scene", name), name + ".yaml"));
+  return parse_scene(files::parse_yaml(text_of(scene_texts(), "scene", name), name + ".yaml"));
 }
 
 Scene office() { return built_in_scene("office"); }
@@ -21,4 +21,4 @@ Scene hall() { return built_in_scene("hall"); }
 
 Scene street() { return built_in_scene("street"); }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -6,7 +6,7 @@
 
 #include "grabbers/simulate/scene.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Names of the scenes that need no file: those of configs/scenes, as they were when crisp was built.
 const std::vector<std::string>& built_in_scenes();
@@ -24,4 +24,4 @@ Scene hall();
 /// A street of 120 m between house fronts, with kerbs, poles and parked vans; open above and at its ends.
 Scene street();
 
-}  // namespace crisp
+}  // namespace crisp::simulate

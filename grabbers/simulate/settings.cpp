@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 
 std::size_t FieldOfView::beams() const {
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -28,4 +28,4 @@ void check_plate_frequency(const ScannerSettings& settings) {
               "give a plate_frequency above 0 Hz");
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

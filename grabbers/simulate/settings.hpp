@@ -14,7 +14,7 @@
 #include "grabbers/simulate/motion.hpp"
 #include "grabbers/simulate/noise.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Which beams a laser reports, by their reported angles: first, first + step, … last.
 struct FieldOfView {
@@ -88,4 +88,4 @@ struct ScannerSettings {
 /// @throws Error if the plate reports no reading
 void check_plate_frequency(const ScannerSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace crisp {
+namespace crisp::simulate {
 
 using Eigen::Vector3d;
 
@@ -57,4 +57,4 @@ void look_from(Scene& scene, const Vector3d& position, double yaw) {
   place(scene, -yaw, Vector3d::Zero());
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -7,7 +7,7 @@
 
 #include "grabbers/simulate/scene.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The rectangle between `corner`, `corner + a`, `corner + a + b` and `corner + b` [m].
 Surface rectangle(std::string name, const Eigen::Vector3d& corner, const Eigen::Vector3d& a,
@@ -35,4 +35,4 @@ void add(Scene& to, const Scene& more);
 /// @param yaw       [rad] turn of the scanner's base about the vertical
 void look_from(Scene& scene, const Eigen::Vector3d& position, double yaw);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -2,7 +2,7 @@
 #include "grabbers/simulate/scenario_options.hpp"
 #include "grabbers/simulate/simulate_stage.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 void SimulateStage::describe(Description& d) {
   d.name("grabber.simulate")
@@ -128,4 +128,4 @@ void SimulateStage::describe_faults(Description& d) {
       .range(0, 1);
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

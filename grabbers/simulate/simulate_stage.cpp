@@ -16,12 +16,12 @@
 #include "grabbers/simulate/truth_file.hpp"
 #include "pipeline/files/quantity.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 double seconds(const std::string& what, const std::string& text) {
-  const auto parsed = parse_quantity(text, "s");
-  if (const auto* complaint = std::get_if<Complaint>(&parsed)) {
+  const auto parsed = files::parse_quantity(text, "s");
+  if (const auto* complaint = std::get_if<files::Complaint>(&parsed)) {
     throw Error("'" + what + "' is not understood: " + complaint->text,
                 "write it as laser2@3s+1s (a silence) or laser1@5s (a restart)");
   }
@@ -131,4 +131,4 @@ void register_simulate(Registrar& registrar) {
   registrar.stage<InjectStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

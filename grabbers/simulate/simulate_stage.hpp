@@ -17,7 +17,7 @@
 #include "grabbers/simulate/scenario.hpp"
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// `grabber.simulate`: simulates the hub's received data from a scanner in a known scene, and optionally
 /// writes the capture and the truth.
@@ -47,7 +47,7 @@ class SimulateStage final : public Stage {
 
   RecordingSettings settings_;
   TruthChoice hidden_{
-      .nominal_errors = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04},
+      .nominal_errors = {.tau = 0.02, .alpha = 3 * data::kDegree, .lambda = 5 * data::kDegree, .eta = 0.04},
       .calibration_file = {},
       .effects = {}};
   RealismChoice realism_;
@@ -70,4 +70,4 @@ class SimulateStage final : public Stage {
 /// The simulator's stages.
 void register_simulate(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

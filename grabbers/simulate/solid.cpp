@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 using Eigen::Vector2d;
@@ -222,4 +222,4 @@ void check(const Solid& solid, const std::string& name) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-namespace crisp {
+namespace crisp::simulate {
 
 struct Ray {
   Eigen::Vector3d origin;     ///< [m]
@@ -63,4 +63,4 @@ Solid placed(const Solid& solid, double yaw, const Eigen::Vector3d& by, double s
 /// @throws Error  if the solid has no volume; `name` is its name in the message
 void check(const Solid& solid, const std::string& name);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

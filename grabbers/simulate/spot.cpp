@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 constexpr int kAround = 6;
@@ -93,4 +93,4 @@ std::optional<SpotEcho> Spot::echo(const RayCaster& scene, const Ray& beam, cons
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -8,7 +8,7 @@
 #include "grabbers/simulate/noise.hpp"
 #include "grabbers/simulate/ray_caster.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// A beam's echo as the laser receives it.
 struct SpotEcho {
@@ -41,4 +41,4 @@ class Spot {
   std::vector<double> reflectances_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -12,11 +12,12 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
-constexpr double kFirstPossibleBeam = -45 * kDegree;  // reported angle that the mirror's index stands for
-constexpr double kSmallestRange = 0.016;              // [m] what a device sends below is a code, not a range
+constexpr double kFirstPossibleBeam =
+    -45 * data::kDegree;                  // reported angle that the mirror's index stands for
+constexpr double kSmallestRange = 0.016;  // [m] what a device sends below is a code, not a range
 
 /// Remission of an echo by a device of 8 bits.
 float remission(const SpotEcho& echo) { return static_cast<float>(std::round(254 * echo.strength)); }
@@ -30,7 +31,7 @@ double reported_range(const LaserChain& chain, std::span<const double> parameter
   beam.measured_range = distance;
   for (int step = 0; step < kSteps; ++step) {
     beam.range = beam.measured_range;
-    apply_phase<double>(chain, Phase::kRange, parameters, {&beam, 1});
+    model::apply_phase<double>(chain, Phase::kRange, parameters, {&beam, 1});
     const double miss = distance - beam.range;
     beam.measured_range += miss;
     if (std::abs(miss) < kClose) return beam.measured_range;
@@ -97,7 +98,7 @@ SweepSimulator::SweepSimulator(const ScannerSettings& settings, const Scene& sce
     Laser& laser =
         lasers_.emplace_back(Laser{.mirror = Mirror(mirror, settings_.seed, name, effects.mirror_excess),
                                    .noise = RangeNoise(settings_.range, effects.noise, settings_.seed, name),
-                                   .foliage = RandomStream(settings_.seed, name + ".foliage"),
+                                   .foliage = statistics::RandomStream(settings_.seed, name + ".foliage"),
                                    .spot = Spot(effects.noise, settings_.range.max_distance, reflectances),
                                    .upcoming = {},
                                    .field = pattern.field,
@@ -134,7 +135,7 @@ void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
   traced_.resize(beams.size());
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double angle = laser.field.angle_of(beams[i]) + shift;
-    const double turned = (angle - kFirstPossibleBeam) / (360 * kDegree);
+    const double turned = (angle - kFirstPossibleBeam) / (360 * data::kDegree);
     sweep.times[i] = sweep.revolution.begin + turned * sweep.revolution.period;
     traced_[i] = {};
     traced_[i].measured_mirror = angle - mount;
@@ -142,7 +143,8 @@ void SweepSimulator::aim(Laser& laser, Sweep& sweep) {
     traced_[i].number = beams[i];
   }
   const auto known = std::make_unique<bool[]>(beams.size());  // a true motion knows every instant
-  trace<double>(model_.chain(sweep.laser), laser.parameters, traced_, *motion_, {known.get(), beams.size()});
+  model::trace<double>(model_.chain(sweep.laser), laser.parameters, traced_, *motion_,
+                       {known.get(), beams.size()});
 }
 
 void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
@@ -171,4 +173,4 @@ void SweepSimulator::measure(Laser& laser, Sweep& sweep) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

@@ -13,7 +13,7 @@
 #include "grabbers/simulate/spot.hpp"
 #include "pipeline/model/chain.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// Measurements of one laser in one turn of its mirror.
 struct Sweep {
@@ -46,7 +46,7 @@ class SweepSimulator {
   struct Laser {
     Mirror mirror;
     RangeNoise noise;
-    RandomStream foliage;
+    statistics::RandomStream foliage;
     Spot spot;
     Revolution upcoming;
     FieldOfView field;
@@ -66,4 +66,4 @@ class SweepSimulator {
   std::vector<Beam<double>> traced_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::simulate

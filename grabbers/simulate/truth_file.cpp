@@ -7,7 +7,7 @@
 
 #include "grabbers/simulate/device_effects.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 namespace {
 
 void add_device(std::map<std::string, std::string>& provenance, const DeviceTruth& device) {
@@ -49,4 +49,4 @@ void write_truth(const std::filesystem::path& file, const RecordingTruth& truth,
   write_calibration(file, truth_to_write(truth, settings, scene));
 }
 
-}  // namespace crisp
+}  // namespace crisp::simulate

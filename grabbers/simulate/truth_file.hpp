@@ -8,7 +8,7 @@
 
 #include "grabbers/simulate/recording_settings.hpp"
 
-namespace crisp {
+namespace crisp::simulate {
 
 /// The truth of a simulation as a calibration for assembly; its provenance holds, as text, the scene, seed
 /// and settings, and the true clock of each device: `laser1.clock.skew` (hub seconds a device second − 1),
@@ -22,4 +22,4 @@ Calibration truth_to_write(const RecordingTruth& truth, const RecordingSettings&
 void write_truth(const std::filesystem::path& file, const RecordingTruth& truth,
                  const RecordingSettings& settings, const std::string& scene);
 
-}  // namespace crisp
+}  // namespace crisp::simulate

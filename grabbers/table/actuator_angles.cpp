@@ -9,7 +9,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 double ActuatorAngles::unwrap(double reported) {
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -46,4 +46,4 @@ PlateTrajectory ActuatorAngles::trajectory(std::int64_t epoch_ns, double max_gap
   return {epoch_ns, times_, angles_, max_gap};
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

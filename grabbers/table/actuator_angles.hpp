@@ -8,7 +8,7 @@
 #include <crisp/plate_trajectory.hpp>
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 /// The angles of an actuator as its recording has them, rounded to the steps of the rig's encoder and
 /// continued over whole turns.
@@ -38,4 +38,4 @@ class ActuatorAngles {
   std::vector<double> angles_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

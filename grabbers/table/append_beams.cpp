@@ -5,7 +5,7 @@
 
 #include "pipeline/data/mirror_angle.hpp"
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 void resize(Measurements& to, std::size_t n) {
@@ -22,11 +22,11 @@ void put_angles(const BeamSequence& sequence, std::size_t n, float* to) {
   const auto angle = [&](std::size_t k) {
     return sequence.first_angle + static_cast<double>(k) * sequence.angle_step;
   };
-  const auto is_wrapped = [&](std::size_t k) { return wrapped_mirror_angle(angle(k)) == angle(k); };
+  const auto is_wrapped = [&](std::size_t k) { return data::wrapped_mirror_angle(angle(k)) == angle(k); };
   if (n == 0 || (is_wrapped(0) && is_wrapped(n - 1))) {
     for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<float>(angle(k));
   } else {
-    for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<float>(wrapped_mirror_angle(angle(k)));
+    for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<float>(data::wrapped_mirror_angle(angle(k)));
   }
 }
 
@@ -73,7 +73,7 @@ void append_beams(const BeamSequence& sequence, std::span<const BeamEchoes> echo
       if (!(ranges[k] > 0)) continue;
       to.range[at] = ranges[k];
       to.mirror_angle[at] =
-          static_cast<float>(wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step));
+          static_cast<float>(data::wrapped_mirror_angle(sequence.first_angle + n * sequence.angle_step));
       to.time[at] = sequence.first_time + n * sequence.interval;
       to.laser[at] = sequence.laser;
       to.remission[at] = remissions.empty() ? 0.0F : remissions[k];
@@ -84,4 +84,4 @@ void append_beams(const BeamSequence& sequence, std::span<const BeamEchoes> echo
   resize(to, at);
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

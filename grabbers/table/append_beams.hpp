@@ -6,7 +6,7 @@
 
 #include <crisp/measurements.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 /// Angles and firing times of a scan's beams.
 struct BeamSequence {
@@ -27,4 +27,4 @@ struct BeamEchoes {
 /// @param echoes  of the same number of beams
 void append_beams(const BeamSequence& sequence, std::span<const BeamEchoes> echoes, Measurements& to);
 
-}  // namespace crisp
+}  // namespace crisp::table

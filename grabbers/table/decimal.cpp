@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace crisp {
+namespace crisp::table {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::optional<std::int64_t> shifted_decimal(std::string_view text, int exponent)
   return negative ? -value : value;
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -8,7 +8,7 @@
 #include "grabbers/table/decimal.hpp"
 #include "grabbers/wire/encoder_line.hpp"
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 constexpr std::string_view kBlanks = " \t";
@@ -60,11 +60,11 @@ std::optional<PlateReading> EncoderLines::next() {
       note_fault("lines without a time of receipt");
       continue;
     }
-    const PlateFailure failure = decode_plate_line(line, own_, reading);
-    if (failure == PlateFailure::OtherSentence) {
+    const wire::PlateFailure failure = wire::decode_plate_line(line, own_, reading);
+    if (failure == wire::PlateFailure::OtherSentence) {
       ++losses_["lines that are not of the encoder"];
-    } else if (failure != PlateFailure::None) {
-      note_fault(fmt::format("lines with {}", to_string(failure)));
+    } else if (failure != wire::PlateFailure::None) {
+      note_fault(fmt::format("lines with {}", wire::to_string(failure)));
     } else if (!stamp_ && !take_own_time(reading)) {
       note_fault("lines that are not later than the one before");
     } else {
@@ -75,4 +75,4 @@ std::optional<PlateReading> EncoderLines::next() {
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -15,7 +15,7 @@
 #include "grabbers/table/table_format.hpp"
 #include "grabbers/table/table_lines.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 /// Reads the lines of an encoder from a text: those of the rig's format, or sentences of $PPLT. Other lines
 /// are left out and counted; memory does not depend on the length of the text.
@@ -53,4 +53,4 @@ class EncoderLines {
   std::optional<Error> first_fault_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 void EncoderLinesStage::describe(StageDescription<EncoderLinesStage>& d) {
   d.name("grabber.encoder_lines").summary("reads encoder readings from a file of the encoder's lines");
@@ -75,4 +75,4 @@ void EncoderLinesStage::report(Context& context) const {
   context.print(fmt::format("{} readings of {}", lines.readings(), context.rig().plate.name));
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

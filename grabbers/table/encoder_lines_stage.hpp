@@ -11,7 +11,7 @@
 #include "grabbers/table/encoder_lines.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 /// `grabber.encoder_lines`: encoder readings from a file of the lines that an encoder sent, among scans in
 /// the order of their receipt.
@@ -28,8 +28,8 @@ class EncoderLinesStage final : public Stage {
   struct File {
     File(const std::filesystem::path& file, const Rig& rig, std::optional<TimeUnit> stamp_unit);
 
-    ByteStream stream;
-    ByteStreamBuffer buffer;
+    files::ByteStream stream;
+    files::ByteStreamBuffer buffer;
     std::istream in;
     EncoderLines lines;
     std::optional<PlateReading> next;  ///< reading that was not given yet
@@ -43,4 +43,4 @@ class EncoderLinesStage final : public Stage {
   std::optional<File> file_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -4,11 +4,11 @@
 #include "grabbers/table/encoder_lines_stage.hpp"
 #include "grabbers/table/table_stage.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 void register_table(Registrar& registrar) {
   registrar.stage<TableStage>();
   registrar.stage<EncoderLinesStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

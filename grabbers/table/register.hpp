@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 /// grabber.table and grabber.encoder_lines.
 void register_table(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -7,7 +7,7 @@
 
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::table {
 
 /// Units of a column, by what one of them is in SI.
 enum class TimeUnit { s, ms, us, ns };
@@ -67,4 +67,4 @@ struct TableRow {
   std::vector<float> remissions;  ///< device's units
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

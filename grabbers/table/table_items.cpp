@@ -9,7 +9,7 @@
 
 #include "grabbers/table/append_beams.hpp"
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 constexpr double kMicro = 1e6, kNano = 1e9;
@@ -178,4 +178,4 @@ double TableItems::middle_time() const {
 
 void TableItems::forget_angles_before(double time) { angles_.forget_before(time); }
 
-}  // namespace crisp
+}  // namespace crisp::table

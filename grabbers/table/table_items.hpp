@@ -16,7 +16,7 @@
 #include "grabbers/table/actuator_angles.hpp"
 #include "grabbers/table/table_format.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 /// Motion of the actuator during a scan.
 enum class ActuatorMotion {
@@ -110,4 +110,4 @@ class TableItems {
   std::map<std::string, std::uint64_t> losses_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

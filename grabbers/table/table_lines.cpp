@@ -6,7 +6,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 constexpr std::size_t kAtOnce = 1 << 16;
@@ -62,4 +62,4 @@ bool TableLines::next(std::string& line) {
   return any;
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

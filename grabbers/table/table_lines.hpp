@@ -5,7 +5,7 @@
 #include <istream>
 #include <string>
 
-namespace crisp {
+namespace crisp::table {
 
 /// The lines of a text, in whatever way they end (LF, CRLF, or CR alone), without a byte order mark before
 /// the first. Memory is bounded, whatever the text is.
@@ -36,4 +36,4 @@ class TableLines {
   int number_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

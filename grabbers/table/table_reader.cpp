@@ -8,7 +8,7 @@
 
 #include "grabbers/table/decimal.hpp"
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 constexpr std::size_t kMaxRanges = 65536;  // beams that a measurement's index can number
@@ -210,4 +210,4 @@ std::optional<TableRow> TableReader::next() {
   return std::nullopt;
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -13,7 +13,7 @@
 #include "grabbers/table/table_format.hpp"
 #include "grabbers/table/table_lines.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 /// Reads a table of scans, or of single beams, row by row: numbers apart by commas, semicolons, tabs or
 /// spaces. Lines that are empty or begin with # or % are no rows, nor is a first line of names. A row that
@@ -45,4 +45,4 @@ class TableReader {
   std::optional<Error> first_fault_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

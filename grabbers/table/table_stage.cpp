@@ -14,7 +14,7 @@
 
 #include "pipeline/files/byte_stream.hpp"
 
-namespace crisp {
+namespace crisp::table {
 namespace {
 
 constexpr int kMaxColumns = 1'000'000;
@@ -173,8 +173,8 @@ void TableStage::process(const Inputs&, Outputs& out, Context& context) {
   if (std::filesystem::is_directory(file_)) {
     throw Error(file_.string() + " is a folder, not a table", "name the file in it");
   }
-  ByteStream stream(file_, [&context] { return context.interrupted(); });
-  ByteStreamBuffer buffer(stream);
+  files::ByteStream stream(file_, [&context] { return context.interrupted(); });
+  files::ByteStreamBuffer buffer(stream);
   std::istream in(&buffer);
   in.exceptions(std::ios::badbit);
   context.reads(file_);
@@ -223,4 +223,4 @@ void TableStage::report(const TableReader& reader, const TableItems& items, std:
   context.print(fmt::format("{} rows with {} ranges", items.rows(), beams));
 }
 
-}  // namespace crisp
+}  // namespace crisp::table

@@ -10,7 +10,7 @@
 #include "grabbers/table/table_items.hpp"
 #include "grabbers/table/table_reader.hpp"
 
-namespace crisp {
+namespace crisp::table {
 
 /// `grabber.table`: scans of any actuated laser, with the actuator's angles, from text in columns.
 class TableStage final : public Stage {
@@ -35,4 +35,4 @@ class TableStage final : public Stage {
   std::optional<double> duration_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::table

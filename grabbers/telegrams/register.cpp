@@ -3,8 +3,8 @@
 
 #include "grabbers/telegrams/telegrams_stage.hpp"
 
-namespace crisp {
+namespace crisp::telegrams {
 
 void register_telegrams(Registrar& registrar) { registrar.stage<TelegramsStage>(); }
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

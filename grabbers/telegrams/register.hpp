@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::telegrams {
 
 /// grabber.telegrams.
 void register_telegrams(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

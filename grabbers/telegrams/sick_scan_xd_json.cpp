@@ -13,7 +13,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::telegrams {
 namespace {
 
 constexpr std::size_t kLongestElement = 64 << 20;  // [bytes] thousands of times a telegram's
@@ -78,9 +78,9 @@ const nlohmann::json* at(const nlohmann::json& from, std::initializer_list<const
 }
 
 /// "02:1f:…"; nothing if it is not of this form.
-std::optional<Bytes> bytes_of(std::string_view text) {
+std::optional<wire::Bytes> bytes_of(std::string_view text) {
   constexpr std::size_t kDigits = 2;
-  Bytes bytes;
+  wire::Bytes bytes;
   bytes.reserve(text.size() / (kDigits + 1) + 1);
   while (!text.empty()) {
     std::uint8_t byte = 0;
@@ -157,4 +157,4 @@ void read_telegram_list(std::istream& text, const std::string& name, Counts& los
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

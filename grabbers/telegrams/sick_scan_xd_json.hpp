@@ -10,12 +10,12 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::telegrams {
 
 /// Bytes that came together.
 struct ListedTelegram {
   std::int64_t time_ns = 0;  ///< since the recording began
-  Bytes bytes;               ///< with their framing
+  wire::Bytes bytes;         ///< with their framing
 };
 
 /// Reads telegrams as pcap_json_converter of SICK's driver sick_scan_xd writes them for its emulator: a JSON
@@ -31,4 +31,4 @@ struct ListedTelegram {
 void read_telegram_list(std::istream& text, const std::string& name, Counts& losses,
                         const std::function<void(ListedTelegram)>& use);
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

@@ -13,7 +13,7 @@
 #include "grabbers/telegrams/sick_scan_xd_json.hpp"
 #include "pipeline/files/byte_stream.hpp"
 
-namespace crisp {
+namespace crisp::telegrams {
 namespace {
 
 /// Which laser of the rig is meant; nothing if there is none of that name.
@@ -42,19 +42,19 @@ void TelegramsStage::check(const RunSettings& run) const {
 }
 
 void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
-  ByteStream stream(file_, [&context] { return context.interrupted(); });
-  ByteStreamBuffer buffer(stream);
+  files::ByteStream stream(file_, [&context] { return context.interrupted(); });
+  files::ByteStreamBuffer buffer(stream);
   std::istream text(&buffer);
   text.exceptions(std::ios::badbit);
   context.reads(file_);
   Counts losses;
   const std::size_t laser = *laser_named(laser_, context.rig());
   const RigLaser& own = context.rig().lasers.at(laser);
-  DeviceLog log(DeviceKind::Laser, own.name, own.address, static_cast<std::uint16_t>(laser));
-  std::optional<WiredEncoder> encoder;
+  devices::DeviceLog log(DeviceKind::Laser, own.name, own.address, static_cast<std::uint16_t>(laser));
+  std::optional<devices::WiredEncoder> encoder;
   if (context.rig().plate.encoder_of) encoder.emplace(context.rig());
-  ColaFramer framer;
-  const auto take = [&](const ColaFrame& frame) {
+  wire::ColaFramer framer;
+  const auto take = [&](const wire::ColaFrame& frame) {
     auto scan = log.take(frame, EncoderWidths::Position32);
     if (!scan) return;
     if (const auto reading = encoder ? encoder->read(*scan, EncoderWidths::Position32) : std::nullopt)
@@ -69,10 +69,11 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
       context.progress(Progress{static_cast<double>(telegrams), 0, "telegrams", "reading telegrams"});
   });
   framer.gap(take);
-  note_framing(framer.counts(), log);
+  devices::note_framing(framer.counts(), log);
   const DeviceStatistics statistics = log.statistics();
-  for (auto& caveat : lost_devices({.devices = {statistics}})) context.mark_untrusted(std::move(caveat));
-  for (auto& warning : loss_warnings({.devices = {statistics}}, file_.filename().string())) {
+  for (auto& caveat : capture::lost_devices({.devices = {statistics}}))
+    context.mark_untrusted(std::move(caveat));
+  for (auto& warning : capture::loss_warnings({.devices = {statistics}}, file_.filename().string())) {
     context.warn(std::move(warning));
   }
   for (const auto& [what, n] : losses.all()) context.count(what, n);
@@ -85,4 +86,4 @@ void TelegramsStage::process(const Inputs&, Outputs& out, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

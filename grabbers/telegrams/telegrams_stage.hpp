@@ -6,7 +6,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::telegrams {
 
 /// `grabber.telegrams`: scans of one laser from a list of its telegrams in JSON.
 class TelegramsStage final : public Stage {
@@ -21,4 +21,4 @@ class TelegramsStage final : public Stage {
   std::string laser_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::telegrams

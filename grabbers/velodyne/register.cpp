@@ -3,8 +3,8 @@
 
 #include "grabbers/velodyne/velodyne_stage.hpp"
 
-namespace crisp {
+namespace crisp::velodyne {
 
 void register_velodyne(Registrar& registrar) { registrar.stage<VelodyneStage>(); }
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

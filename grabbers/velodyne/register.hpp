@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::velodyne {
 
 /// grabber.velodyne.
 void register_velodyne(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

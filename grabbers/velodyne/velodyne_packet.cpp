@@ -5,7 +5,7 @@
 
 #include "grabbers/capture/byte_order.hpp"
 
-namespace crisp {
+namespace crisp::velodyne {
 namespace {
 
 constexpr std::size_t kBlockBytes = 100, kReturnBytes = 3, kHeaderBytes = 4;
@@ -16,8 +16,8 @@ constexpr std::uint16_t kAzimuthsATurn = 36000;
 constexpr double kRangeStep = 0.002;  // [m]
 
 template <class T>
-T little(ByteView bytes, std::size_t at) {
-  return number_at<T>(bytes, at, ByteOrder::Little);
+T little(wire::ByteView bytes, std::size_t at) {
+  return capture::number_at<T>(bytes, at, capture::ByteOrder::Little);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::uint32_t velodyne_passed_us(std::uint32_t from, std::uint32_t to) {
   return to >= from ? to - from : kVelodyneHour_us - (from - to);
 }
 
-std::optional<VelodynePacket> parse_velodyne(ByteView bytes) {
+std::optional<VelodynePacket> parse_velodyne(wire::ByteView bytes) {
   if (bytes.size() != kVelodynePacket || bytes[kProductAt] != kVlp16) return {};
   if (bytes[kModeAt] != kStrongest && bytes[kModeAt] != kLast) return {};
   VelodynePacket packet;
@@ -52,4 +52,4 @@ std::optional<VelodynePacket> parse_velodyne(ByteView bytes) {
   return packet;
 }
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

@@ -7,7 +7,7 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::velodyne {
 
 inline constexpr std::size_t kVelodyneLasers = 16;
 inline constexpr std::size_t kVelodyneBlocks = 12;
@@ -37,6 +37,6 @@ std::uint32_t velodyne_passed_us(std::uint32_t from, std::uint32_t to);
 
 /// Reads a packet. Nothing for other sizes, flags, products, modes, times beyond an hour and azimuths beyond
 /// a turn.
-std::optional<VelodynePacket> parse_velodyne(ByteView bytes);
+std::optional<VelodynePacket> parse_velodyne(wire::ByteView bytes);
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

@@ -8,18 +8,18 @@
 #include "grabbers/capture/capture_file.hpp"
 #include "grabbers/capture/dissect.hpp"
 
-namespace crisp {
+namespace crisp::velodyne {
 namespace {
 
 constexpr double kMaxGap = 0.05;  // [s] of the azimuths, which come every 0.11 ms
 
-std::optional<TransportPacket> datagram_of(const Packet& packet) {
-  const auto found = dissect_ip(packet);
-  const auto* ip = std::get_if<IpPacket>(&found);
+std::optional<devices::TransportPacket> datagram_of(const capture::Packet& packet) {
+  const auto found = capture::dissect_ip(packet);
+  const auto* ip = std::get_if<devices::IpPacket>(&found);
   if (ip == nullptr || ip->is_fragment()) return {};
   bool damaged = false;
-  auto datagram = dissect_transport(*ip, damaged);
-  if (damaged || !datagram || datagram->key.transport != Transport::Udp) return {};
+  auto datagram = capture::dissect_transport(*ip, damaged);
+  if (damaged || !datagram || datagram->key.transport != devices::Transport::Udp) return {};
   return datagram;
 }
 
@@ -68,9 +68,9 @@ void VelodyneStage::take(const VelodynePacket& packet, std::int64_t receipt_ns, 
 
 void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
   context.reads(file_);
-  CaptureFile capture(file_, [&context] { return context.interrupted(); });
+  capture::CaptureFile capture(file_, [&context] { return context.interrupted(); });
   std::uint64_t packets = 0;
-  while (const Packet* packet = capture.next()) {
+  while (const capture::Packet* packet = capture.next()) {
     if (context.interrupted()) return;
     const auto datagram = datagram_of(*packet);
     const auto data = datagram ? parse_velodyne(datagram->payload) : std::nullopt;
@@ -96,4 +96,4 @@ void VelodyneStage::process(const Inputs&, Outputs& out, Context& context) {
   head_->take_rest().give_to(out);
 }
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

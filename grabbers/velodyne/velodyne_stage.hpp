@@ -10,7 +10,7 @@
 #include "grabbers/devices/rotating_head.hpp"
 #include "grabbers/velodyne/velodyne_packet.hpp"
 
-namespace crisp {
+namespace crisp::velodyne {
 
 /// `grabber.velodyne`: a VLP-16 as sixteen lasers with a fixed beam each on one turning plate.
 class VelodyneStage final : public Stage {
@@ -24,9 +24,9 @@ class VelodyneStage final : public Stage {
   void take(const VelodynePacket& packet, std::int64_t receipt_ns, const Rig& rig);
 
   std::filesystem::path file_;
-  std::optional<RotatingHead> head_;  ///< from the first packet on
+  std::optional<devices::RotatingHead> head_;  ///< from the first packet on
   std::uint32_t last_us_ = 0;
   double packet_time_ = 0;  ///< [s since the epoch] of the last packet, by the device's clock
 };
 
-}  // namespace crisp
+}  // namespace crisp::velodyne

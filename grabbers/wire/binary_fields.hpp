@@ -11,7 +11,7 @@
 #include "grabbers/wire/bytes.hpp"
 #include "grabbers/wire/fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Reads CoLa-B's fields: big-endian, packed, of fixed width.
 class BinaryReader : public FieldReader {
@@ -103,4 +103,4 @@ class BinaryWriter {
   Bytes& out_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::wire

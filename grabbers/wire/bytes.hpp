@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crisp {
+namespace crisp::wire {
 
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
@@ -21,4 +21,4 @@ inline ByteView as_bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

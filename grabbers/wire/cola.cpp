@@ -13,7 +13,7 @@
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr std::array<std::string_view, 26> kErrorTexts = {
@@ -116,4 +116,4 @@ std::string_view cola_error_text(unsigned code) {
   return "a code that the manuals do not list";
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -9,7 +9,7 @@
 
 #include "grabbers/wire/bytes.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Longest plausible payload of one telegram [bytes].
 inline constexpr std::size_t kLargestColaPayload = 64 * 1024;
@@ -41,4 +41,4 @@ std::optional<unsigned> cola_error_code(const ColaTelegram& telegram);
 /// Meaning of the code of an sFA telegram, in words.
 std::string_view cola_error_text(unsigned code);
 
-}  // namespace crisp
+}  // namespace crisp::wire

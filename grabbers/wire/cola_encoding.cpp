@@ -4,7 +4,7 @@
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 void append(const ColaValue& value, TextWriter writer) {
@@ -74,4 +74,4 @@ std::optional<unsigned> first_byte(const ColaTelegram& telegram) {
   return value;
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

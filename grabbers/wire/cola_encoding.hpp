@@ -10,7 +10,7 @@
 
 #include "grabbers/wire/cola.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// A parameter of a request or an answer, with the type that gives it its width in CoLa-B.
 using ColaValue = std::variant<std::uint8_t, std::uint16_t, std::uint32_t, std::int32_t, std::string>;
@@ -26,4 +26,4 @@ Bytes cola_error(std::uint16_t code, ColaLanguage language);
 /// The first parameter, an unsigned number of one byte; nothing if there is none.
 std::optional<unsigned> first_byte(const ColaTelegram& telegram);
 
-}  // namespace crisp
+}  // namespace crisp::wire

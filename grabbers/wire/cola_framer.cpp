@@ -5,7 +5,7 @@
 
 #include "grabbers/wire/binary_fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr std::uint8_t kStart = 0x02, kEnd = 0x03;
@@ -126,4 +126,4 @@ void ColaFramer::advance(std::size_t n) {
   while (!pieces_.empty() && pieces_.front().end <= offset_) pieces_.pop_front();
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

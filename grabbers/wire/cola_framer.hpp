@@ -7,7 +7,7 @@
 
 #include "grabbers/wire/cola.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// One whole telegram of a byte stream.
 struct ColaFrame {
@@ -76,4 +76,4 @@ class ColaFramer {
   Counts counts_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr std::size_t kChecksumDigits = 2;
@@ -116,4 +116,4 @@ PlateFailure decode_plate_line(std::string_view line, const std::optional<Encode
   return decode_encoder_line(line, *own, reading);
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

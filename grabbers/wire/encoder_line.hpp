@@ -8,7 +8,7 @@
 
 #include "grabbers/wire/plate_sentence.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Longest line of a user's own format, without its line end; longer lines are damage.
 inline constexpr std::size_t kLongestEncoderLine = 512;
@@ -24,4 +24,4 @@ PlateFailure decode_encoder_line(std::string_view line, const EncoderLine& forma
 PlateFailure decode_plate_line(std::string_view line, const std::optional<EncoderLine>& own,
                                PlateReading& reading);
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Why a telegram's fields could not be read.
 enum class FieldFailure : std::uint8_t {
@@ -52,4 +52,4 @@ class FieldReader {
   FieldFailure failure_ = FieldFailure::None;
 };
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "grabbers/wire/plate_framer.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 void PlateFramer::gap() {
   if (!line_.empty()) ++counts_.failures[static_cast<std::size_t>(PlateFailure::Truncated)];
@@ -70,4 +70,4 @@ std::optional<PlateReading> PlateFramer::finish_own_line() {
   return end_line(failure, reading);
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -12,7 +12,7 @@
 #include "grabbers/wire/encoder_line.hpp"
 #include "grabbers/wire/plate_sentence.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// What cuts a plate's bytes into pieces.
 enum class PlateBytes : std::uint8_t {
@@ -103,4 +103,4 @@ class PlateFramer {
   Counts counts_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <numeric>
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr std::string_view kTalker = "PPLT,";
@@ -75,4 +75,4 @@ std::string encode_plate_sentence(const PlateReading& reading) {
   return fmt::format("${}*{:02X}\r\n", body, checksum(body));
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -7,7 +7,7 @@
 
 #include <crisp/scan.hpp>
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Longest sentence of the plate, without its line end; longer lines are damage.
 inline constexpr std::size_t kLongestPlateSentence = 82;  // NMEA 0183's limit
@@ -30,4 +30,4 @@ PlateFailure decode_plate_sentence(std::string_view line, PlateReading& reading)
 /// The sentence of one reading with its line end.
 std::string encode_plate_sentence(const PlateReading& reading);
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -6,7 +6,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
@@ -44,7 +44,7 @@ class Gathering {
       if (!has_ranges_[n]) scan_.echoes[n].ranges.assign(first_->raw.size(), 0);
       if (!has_remissions_[n]) scan_.echoes[n].remissions.clear();
     }
-    scan_.start_angle = first_->start_angle / kUnitsPerDegree * kDegree;
+    scan_.start_angle = first_->start_angle / kUnitsPerDegree * data::kDegree;
     scan_.angle_step = exact_angle_step(first_->angle_step);
     return ScanFailure::None;
   }
@@ -114,7 +114,7 @@ double exact_angle_step(std::uint16_t step) {
   constexpr double kParts = 24;
   const double parts = std::round(step * kParts / kUnitsPerDegree);
   const bool rounded = std::lround(parts * kUnitsPerDegree / kParts) == step;
-  return (rounded ? parts / kParts : step / kUnitsPerDegree) * kDegree;
+  return (rounded ? parts / kParts : step / kUnitsPerDegree) * data::kDegree;
 }
 
 ScanFailure to_scan(const ScanData& data, std::uint16_t laser, std::int64_t receipt_ns, Scan& scan) {
@@ -137,4 +137,4 @@ ScanFailure to_scan(const ScanData& data, std::uint16_t laser, std::int64_t rece
   return ScanFailure::None;
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

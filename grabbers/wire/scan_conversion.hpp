@@ -8,7 +8,7 @@
 
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Raw distances below this are codes (0 no echo, 2, 3 …), not millimetres.
 inline constexpr std::uint16_t kFirstDistance = 16;
@@ -35,4 +35,4 @@ double exact_angle_step(std::uint16_t step);
 /// @param scan       receives the scan; its memory is used again. Half filled after a failure.
 ScanFailure to_scan(const ScanData& data, std::uint16_t laser, std::int64_t receipt_ns, Scan& scan);
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -11,7 +11,7 @@
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 // The order of the fields is written once, as functions of a "wire": a reader or a writer of either language.
@@ -213,4 +213,4 @@ Bytes encode_scan_data(const ScanData& data, ColaLanguage language) {
   return out;
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

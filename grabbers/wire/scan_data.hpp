@@ -14,7 +14,7 @@
 #include "grabbers/wire/cola.hpp"
 #include "grabbers/wire/fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 inline constexpr double kUnitsPerDegree = 1e4;  ///< of angles in telegrams
 
@@ -109,4 +109,4 @@ void append_scan_data(const ScanData& data, ColaLanguage language, std::string_v
 /// The same with the usual `sSN` and encoder widths.
 Bytes encode_scan_data(const ScanData& data, ColaLanguage language);
 
-}  // namespace crisp
+}  // namespace crisp::wire

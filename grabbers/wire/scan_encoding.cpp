@@ -12,7 +12,7 @@
 #include "grabbers/wire/cola.hpp"
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr double kMillimetres = 1e3;
@@ -38,8 +38,10 @@ float scale_for(const std::vector<float>& values, double factor, double most) {
 ChannelBlock channel(const Scan& scan, std::string name, const std::vector<float>& values, double factor,
                      double most) {
   ChannelBlock block{.name = std::move(name), .scale = scale_for(values, factor, most)};
-  block.start_angle = static_cast<std::int32_t>(std::lround(scan.start_angle / kDegree * kUnitsPerDegree));
-  block.angle_step = static_cast<std::uint16_t>(std::lround(scan.angle_step / kDegree * kUnitsPerDegree));
+  block.start_angle =
+      static_cast<std::int32_t>(std::lround(scan.start_angle / data::kDegree * kUnitsPerDegree));
+  block.angle_step =
+      static_cast<std::uint16_t>(std::lround(scan.angle_step / data::kDegree * kUnitsPerDegree));
   block.raw.reserve(values.size());
   for (const float value : values) {
     block.raw.push_back(static_cast<std::uint16_t>(std::lround(value * factor / block.scale)));
@@ -48,9 +50,9 @@ ChannelBlock channel(const Scan& scan, std::string name, const std::vector<float
 }
 
 void check_angles(const Scan& scan) {
-  constexpr double kMax = 720 * kDegree;
+  constexpr double kMax = 720 * data::kDegree;
   const bool start = std::abs(scan.start_angle) <= kMax;
-  const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / kDegree < kMaxRaw;
+  const bool step = scan.angle_step >= 0 && scan.angle_step * kUnitsPerDegree / data::kDegree < kMaxRaw;
   if (start && step) return;
   throw Error(
       fmt::format("a scan begins at {:g} rad and has steps of {:g} rad, which a telegram cannot encode",
@@ -94,4 +96,4 @@ ScanData to_scan_data(const Scan& scan) {
   return data;
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -5,7 +5,7 @@
 
 #include "grabbers/wire/scan_data.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Encodes a scan as the telegram that it was decoded from, as far as the scan determines it: decoded again,
 /// it gives the same ranges [whole millimetres, rounded beyond 65 m], angles, counters and times. A code that
@@ -13,4 +13,4 @@ namespace crisp {
 /// @throws Error if a range or an angle is beyond the telegram's limits
 ScanData to_scan_data(const Scan& scan);
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -4,7 +4,7 @@
 #include "grabbers/wire/binary_fields.hpp"
 #include "grabbers/wire/text_fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 constexpr unsigned kByte = 8;
@@ -97,4 +97,4 @@ std::optional<ScanContent> scan_content(const ColaTelegram& telegram) {
   return good ? std::optional(c) : std::nullopt;
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -7,7 +7,7 @@
 
 #include "grabbers/wire/cola_encoding.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Scan settings of a laser, in the device's units: the parameters of `mLMPsetscancfg` and `LMPscancfg`.
 struct ScanSettings {
@@ -51,4 +51,4 @@ struct ScanContent {
 std::vector<ColaValue> to_values(const ScanContent& content);
 std::optional<ScanContent> scan_content(const ColaTelegram& telegram);
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -5,7 +5,7 @@
 #include <array>
 #include <charconv>
 
-namespace crisp {
+namespace crisp::wire {
 namespace {
 
 // −1 for a character that is no digit; a table, because a scan has thousands of digits.
@@ -112,4 +112,4 @@ void TextWriter::hexadecimal(std::uint32_t value, int digits) {
     out_.push_back(static_cast<std::uint8_t>(kHexadecimal[(value >> (4 * i)) & 0xF]));
 }
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -13,7 +13,7 @@
 #include "grabbers/wire/bytes.hpp"
 #include "grabbers/wire/fields.hpp"
 
-namespace crisp {
+namespace crisp::wire {
 
 /// Reads CoLa-A's fields: tokens between single spaces; a number is upper-case hexadecimal, or decimal when
 /// it carries a sign.
@@ -84,4 +84,4 @@ class TextWriter {
   Bytes& out_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::wire

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 // The word behind an option with a value is left to bash's own completion of files, if its values cannot be
@@ -71,4 +71,4 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
                      fmt::arg("top", fmt::format("{}\\n--help\\n--version", fmt::join(top, "\\n"))));
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Words that can follow one of the program's commands.
 struct CommandWords {
@@ -22,4 +22,4 @@ struct CommandWords {
 /// installed as /usr/share/bash-completion/completions/crisp.
 std::string bash_completion(const std::vector<CommandWords>& commands);
 
-}  // namespace crisp
+}  // namespace crisp::app

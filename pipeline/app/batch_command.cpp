@@ -19,7 +19,7 @@
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,7 +29,8 @@ using Json = nlohmann::ordered_json;
 void wait_for_the_dying(const fs::path& output) {
   constexpr std::chrono::milliseconds kPollEvery{20};
   constexpr int kTurns = 100;
-  for (int i = 0; i < kTurns && FolderLock::holder_of(output); ++i) std::this_thread::sleep_for(kPollEvery);
+  for (int i = 0; i < kTurns && files::FolderLock::holder_of(output); ++i)
+    std::this_thread::sleep_for(kPollEvery);
 }
 
 std::string host_name() {
@@ -38,20 +39,20 @@ std::string host_name() {
   return name.data();
 }
 
-std::string task_of(const Shard& shard) {
+std::string task_of(const batch::Shard& shard) {
   return shard.is_whole() ? "batch" : fmt::format("shard-{}-of-{}", shard.number, shard.count);
 }
 
 /// Waits while another process has the part: a scheduler starts a task again whose node gives no sign of
 /// life, though the task may live on there.
-void lock_task(const fs::path& task, const Shard& shard, std::optional<FolderLock>& lock) {
+void lock_task(const fs::path& task, const batch::Shard& shard, std::optional<files::FolderLock>& lock) {
   constexpr std::chrono::seconds kTryEvery{1};
   bool waits = false;
   while (!lock) {
     try {
       lock.emplace(task);
     } catch (const Error& error) {
-      if (shard.is_whole() || !FolderLock::is_refusal(error.message())) throw;
+      if (shard.is_whole() || !files::FolderLock::is_refusal(error.message())) throw;
       if (!waits) std::cerr << "waiting for part " << shard.text() << ": " << error.message() << "\n";
       waits = true;
       std::this_thread::sleep_for(kTryEvery);
@@ -59,7 +60,7 @@ void lock_task(const fs::path& task, const Shard& shard, std::optional<FolderLoc
   }
 }
 
-void begin(const BatchRequest& request, const PreparedBatch& batch, ManifestWriter& manifest) {
+void begin(const BatchRequest& request, const PreparedBatch& batch, batch::ManifestWriter& manifest) {
   Json event = {{"settings", batch.digest},
                 {"crisp", CRISP_VERSION},
                 {"pipeline", request.run.file.string()},
@@ -71,9 +72,10 @@ void begin(const BatchRequest& request, const PreparedBatch& batch, ManifestWrit
                 {"jobs", request.jobs},
                 {"arguments", arguments_json(request)},
                 {"effective", batch.settings}};
-  manifest.append(BatchEventKind::batch, event);
+  manifest.append(batch::BatchEventKind::batch, event);
   for (const auto& touched : batch.plan.touched)
-    manifest.append(BatchEventKind::same, {{"name", touched.name}, {"input", to_json(touched.files)}});
+    manifest.append(batch::BatchEventKind::same,
+                    {{"name", touched.name}, {"input", batch::to_json(touched.files)}});
   manifest.sync();
 }
 
@@ -95,20 +97,23 @@ ExitStatus status_of_stop() {
   }
 }
 
-ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch, JobLauncher& launcher,
-                        ManifestWriter& manifest, const FolderLock& lock, const Registrar& registrar) {
+ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch, batch::JobLauncher& launcher,
+                        batch::ManifestWriter& manifest, const files::FolderLock& lock,
+                        const Registrar& registrar) {
   const StopOnSignal stop;
-  BatchOutcome outcome;
+  batch::BatchOutcome outcome;
   {
     BatchDisplay display(request.run.quiet, request.run.metrics);
     std::optional<StopNotice> notice;
     if (!request.run.quiet) notice.emplace(std::cerr);
-    const BatchLimits limits{.jobs = request.jobs,
-                             .timeout = batch.timeout,
-                             .memory = request.memory > 0 ? std::optional(request.memory) : std::nullopt};
-    BatchHooks hooks = display.hooks(StopOnSignal::flag());
+    const batch::BatchLimits limits{
+        .jobs = request.jobs,
+        .timeout = batch.timeout,
+        .memory = request.memory > 0 ? std::optional(request.memory) : std::nullopt};
+    batch::BatchHooks hooks = display.hooks(StopOnSignal::flag());
     hooks.is_lost = [&lock] { return lock.is_lost(); };
-    outcome = run_batch(batch.plan.due, request.output, batch.digest, limits, launcher, manifest, hooks);
+    outcome =
+        batch::run_batch(batch.plan.due, request.output, batch.digest, limits, launcher, manifest, hooks);
   }
   if (lock.is_lost()) {
     print_errors(
@@ -123,7 +128,7 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
   }
   if (*StopOnSignal::flag()) {
     std::cerr << fmt::format("interrupted: {} of {} ended; run the batch again to continue\n",
-                             outcome.progress.ended(), counted(outcome.progress.total, "recording"));
+                             outcome.progress.ended(), data::counted(outcome.progress.total, "recording"));
     return status_of_stop();
   }
   BatchTally tally{.done = outcome.progress.done,
@@ -142,22 +147,22 @@ ExitStatus run_prepared(const BatchRequest& request, const PreparedBatch& batch,
 ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar) {
   std::signal(SIGPIPE, SIG_IGN);  // as crisp run does
   // First of all, while the process is small and has one thread.
-  JobLauncher launcher([&](const Job& job) {
+  batch::JobLauncher launcher([&](const batch::Job& job) {
     wait_for_the_dying(job.output);
     return static_cast<int>(run_command(run_of(request, job), registrar));
   });
   std::optional<PreparedBatch> batch;
-  std::optional<FolderLock> lock;
-  std::optional<ManifestWriter> manifest;
+  std::optional<files::FolderLock> lock;
+  std::optional<batch::ManifestWriter> manifest;
   try {
-    const Shard shard = shard_of(request);
-    const fs::path task = task_folder(request.output, task_of(shard));
+    const batch::Shard shard = shard_of(request);
+    const fs::path task = batch::task_folder(request.output, task_of(shard));
     batch = check_batch(request, shard, registrar);
     lock_task(task, shard, lock);
     remove_left_over_parts(request.output);
     plan_due(request, *batch);
     if (batch->is_over(request.output)) return report_nothing_due(request, *batch);
-    manifest.emplace(task / kManifestFile);
+    manifest.emplace(task / batch::kManifestFile);
     begin(request, *batch, *manifest);
   } catch (const Error& error) {
     print_errors(error);
@@ -166,4 +171,4 @@ ExitStatus batch_command(const BatchRequest& request, const Registrar& registrar
   return run_prepared(request, *batch, launcher, *manifest, *lock, registrar);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -7,7 +7,7 @@
 #include "pipeline/app/batch_request.hpp"
 #include "pipeline/app/commands.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// Runs a pipeline over many recordings, each in a process of its own. Recordings that are done and unchanged
 /// are skipped. Writes the table to the output folder, a summary to stdout, progress and failures to stderr.
@@ -42,4 +42,4 @@ struct BatchRetryRequest {
 ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest request,
                                const Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -8,10 +8,10 @@
 
 #include "pipeline/app/terminal.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
-std::string in_words(const BatchProgress& progress, double elapsed) {
+std::string in_words(const batch::BatchProgress& progress, double elapsed) {
   std::string text = fmt::format("{} of {}, {} untrusted, {} failed", progress.ended(), progress.total,
                                  progress.untrusted, progress.failed);
   constexpr double kEnoughToJudge = 1;  // [s]
@@ -20,7 +20,7 @@ std::string in_words(const BatchProgress& progress, double elapsed) {
   return text;
 }
 
-StageStatus as_gauges(const BatchProgress& progress) {
+StageStatus as_gauges(const batch::BatchProgress& progress) {
   StageStatus status;
   const auto add = [&](const char* name, std::size_t value) {
     status.gauges.push_back({.name = name, .value = static_cast<double>(value)});
@@ -43,7 +43,7 @@ BatchDisplay::BatchDisplay(bool quiet, std::optional<std::uint16_t> metrics)
   if (metrics) metrics_.emplace(*metrics, [this] { return board_.prometheus(); });
 }
 
-void BatchDisplay::show(const BatchProgress& progress) {
+void BatchDisplay::show(const batch::BatchProgress& progress) {
   if (metrics_) board_.set_status("batch", as_gauges(progress));
   if (quiet_) return;
   const std::string text = in_words(progress, seconds_now() - began_);
@@ -52,10 +52,10 @@ void BatchDisplay::show(const BatchProgress& progress) {
                           .what = text});
 }
 
-BatchHooks BatchDisplay::hooks(const std::atomic<bool>* stop) {
+batch::BatchHooks BatchDisplay::hooks(const std::atomic<bool>* stop) {
   return {.stop = stop,
-          .progress = [this](const BatchProgress& progress) { show(progress); },
+          .progress = [this](const batch::BatchProgress& progress) { show(progress); },
           .log = [this](const std::string& line) { printer_.log(line); }};
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -10,7 +10,7 @@
 #include "pipeline/app/status_board.hpp"
 #include "pipeline/batch/run_batch.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// Shows how far a batch is: a bar on the standard error, and numbers for Prometheus.
 class BatchDisplay {
@@ -19,10 +19,10 @@ class BatchDisplay {
   BatchDisplay(bool quiet, std::optional<std::uint16_t> metrics);
 
   /// @param stop  set when the batch is to stop; must outlive the hooks, as this must
-  BatchHooks hooks(const std::atomic<bool>* stop);
+  batch::BatchHooks hooks(const std::atomic<bool>* stop);
 
  private:
-  void show(const BatchProgress& progress);
+  void show(const batch::BatchProgress& progress);
 
   bool quiet_;
   double began_;
@@ -31,4 +31,4 @@ class BatchDisplay {
   ProgressPrinter printer_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -14,14 +14,16 @@
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/batch/trend.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
+using batch::kBatchTable;
 namespace fs = std::filesystem;
 
-nlohmann::ordered_json batch_summary(const BatchRows& rows, const std::vector<ParameterTrend>& trends) {
-  auto json = head_json(rows);
-  json["trend"] = trend_json(trends);
+nlohmann::ordered_json batch_summary(const batch::BatchRows& rows,
+                                     const std::vector<batch::ParameterTrend>& trends) {
+  auto json = batch::head_json(rows);
+  json["trend"] = batch::trend_json(trends);
   return json;
 }
 
@@ -33,19 +35,19 @@ void write_report(const fs::path& output, const Registrar& registrar) {
   request.arguments.input = output;
   const ExitStatus status = run_command(request, registrar);
   if (status == ExitStatus::done || status == ExitStatus::not_trusted) return;
-  throw Error(
-      fmt::format("{} was not written; {} and {} are complete", kBatchReport, kBatchTable, kBatchSummary),
-      fmt::format("the message above says why: `crisp batch table {}` writes it when that is mended",
-                  output.string()));
+  throw Error(fmt::format("{} was not written; {} and {} are complete", batch::kBatchReport, kBatchTable,
+                          batch::kBatchSummary),
+              fmt::format("the message above says why: `crisp batch table {}` writes it when that is mended",
+                          output.string()));
 }
 
 }  // namespace
 
-void BatchTally::add(const std::map<JobStatus, std::size_t>& kept) {
+void BatchTally::add(const std::map<batch::JobStatus, std::size_t>& kept) {
   for (const auto& [status, count] : kept) {
-    if (status == JobStatus::done)
+    if (status == batch::JobStatus::done)
       done += count;
-    else if (status == JobStatus::untrusted)
+    else if (status == batch::JobStatus::untrusted)
       untrusted += count;
     else
       failed += count;
@@ -57,7 +59,7 @@ ExitStatus BatchTally::exit_status() const {
   return untrusted > 0 ? ExitStatus::not_trusted : ExitStatus::done;
 }
 
-BatchTally tally_of(const BatchRows& rows) {
+BatchTally tally_of(const batch::BatchRows& rows) {
   const std::size_t begun = rows.rows.size();
   return {.done = rows.count("done"),
           .untrusted = rows.count("untrusted"),
@@ -74,7 +76,7 @@ std::string in_words(const BatchTally& tally) {
   return text;
 }
 
-std::string trouble_text(const BatchRows& rows) {
+std::string trouble_text(const batch::BatchRows& rows) {
   constexpr std::size_t kMax = 20;
   std::string text;
   std::size_t count = 0;
@@ -89,18 +91,18 @@ std::string trouble_text(const BatchRows& rows) {
 
 bool are_tables_current(const fs::path& output) {
   std::error_code missing;
-  const std::string last = std::string(kBatchReport) + kProvenance;
-  for (const auto& name : {std::string(kBatchTable), std::string(kBatchSummary), last}) {
+  const std::string last = std::string(batch::kBatchReport) + kProvenance;
+  for (const auto& name : {std::string(kBatchTable), std::string(batch::kBatchSummary), last}) {
     const auto written = fs::last_write_time(output / name, missing);
     if (missing) return false;
-    for (const auto& manifest : manifests_of(output)) {
+    for (const auto& manifest : batch::manifests_of(output)) {
       if (fs::last_write_time(manifest) > written) return false;
     }
   }
   return true;
 }
 
-std::string trend_text(const BatchRows& rows) {
+std::string trend_text(const batch::BatchRows& rows) {
   constexpr std::size_t kMax = 20;
   std::string text;
   std::size_t count = 0;
@@ -116,27 +118,27 @@ std::string trend_text(const BatchRows& rows) {
   return text;
 }
 
-BatchRows write_results(const fs::path& output, const Registrar& registrar, std::ostream* out) {
-  auto rows = read_rows(output);
-  const auto trends = batch_trend(rows.rows);
-  mark_outstanding(trends, rows.rows);
+batch::BatchRows write_results(const fs::path& output, const Registrar& registrar, std::ostream* out) {
+  auto rows = batch::read_rows(output);
+  const auto trends = batch::batch_trend(rows.rows);
+  batch::mark_outstanding(trends, rows.rows);
   std::error_code none;
   if (trends.empty())
-    fs::remove(output / kBatchTrend, none);  // of an earlier batch
+    fs::remove(output / batch::kBatchTrend, none);  // of an earlier batch
   else
-    write_file(output / kBatchTrend, trend_svg(trends));
+    write_file(output / batch::kBatchTrend, batch::trend_svg(trends));
   AtomicFile table(output / kBatchTable);
-  print_csv(rows, [&](std::string_view piece) { table.write(piece); });
+  batch::print_csv(rows, [&](std::string_view piece) { table.write(piece); });
   table.commit();
-  AtomicFile summary(output / kBatchSummary);
-  print_json(rows, batch_summary(rows, trends), [&](std::string_view piece) { summary.write(piece); });
+  AtomicFile summary(output / batch::kBatchSummary);
+  batch::print_json(rows, batch_summary(rows, trends), [&](std::string_view piece) { summary.write(piece); });
   summary.commit();
   write_report(output, registrar);
   if (out) {
     *out << fmt::format("{}\n{}{}wrote {} and {}\n", in_words(tally_of(rows)), trouble_text(rows),
-                        trend_text(rows), (output / kBatchTable).string(), kBatchReport);
+                        trend_text(rows), (output / kBatchTable).string(), batch::kBatchReport);
   }
   return rows;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/app/batch_request.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,7 +53,7 @@ std::vector<std::string> batch_words(const BatchRequest& request) {
   return words;
 }
 
-fs::path rig_path(const std::string& pattern, const BatchInput& input) {
+fs::path rig_path(const std::string& pattern, const batch::BatchInput& input) {
   const fs::path recording(input.path);
   std::string path = pattern;
   replace_all(path, "{folder}", (input.is_folder ? recording : recording.parent_path()).string());
@@ -64,4 +64,4 @@ fs::path rig_path(const std::string& pattern, const BatchInput& input) {
 
 bool has_rig_each(const BatchRequest& request) { return request.rig.find('{') != std::string::npos; }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -11,7 +11,7 @@
 #include "pipeline/app/commands.hpp"
 #include "pipeline/batch/recording.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// `crisp batch`.
 struct BatchRequest {
@@ -37,9 +37,9 @@ std::vector<std::string> batch_words(const BatchRequest& request);
 
 /// The rig file of a recording: {folder}, {stem} and {name} are replaced by the recording's folder, its name
 /// without extension, and its name.
-std::filesystem::path rig_path(const std::string& pattern, const BatchInput& input);
+std::filesystem::path rig_path(const std::string& pattern, const batch::BatchInput& input);
 
 /// Whether each recording has a rig of its own.
 bool has_rig_each(const BatchRequest& request);
 
-}  // namespace crisp
+}  // namespace crisp::app

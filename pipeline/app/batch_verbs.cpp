@@ -15,18 +15,19 @@
 #include "pipeline/files/folder_lock.hpp"
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-void print_status(const BatchRows& rows, bool json) {
+void print_status(const batch::BatchRows& rows, bool json) {
   if (json) {
-    std::cout << json_text(head_json(rows), 1) << "\n" << std::flush;
+    std::cout << files::json_text(batch::head_json(rows), 1) << "\n" << std::flush;
     return;
   }
   const BatchTally tally = tally_of(rows);
-  std::cout << fmt::format("{}: {}\n{}", counted(std::max(rows.recordings, rows.rows.size()), "recording"),
+  std::cout << fmt::format("{}: {}\n{}",
+                           data::counted(std::max(rows.recordings, rows.rows.size()), "recording"),
                            in_words(tally), trouble_text(rows));
   for (const auto& row : rows.rows) {
     if (row.status == "running") std::cout << "  running " << row.name << "\n";
@@ -36,15 +37,15 @@ void print_status(const BatchRows& rows, bool json) {
 
 /// Adds an event for each recording that failed and matches.
 std::size_t ask_again(const BatchRetryRequest& retry) {
-  const fs::path task = task_folder(retry.folder, "retry");
-  const FolderLock lock(task);
-  ManifestWriter manifest(task / kManifestFile);
+  const fs::path task = batch::task_folder(retry.folder, "retry");
+  const files::FolderLock lock(task);
+  batch::ManifestWriter manifest(task / batch::kManifestFile);
   std::size_t count = 0;
-  const auto ledger = BatchLedger::read(retry.folder);
+  const auto ledger = batch::BatchLedger::read(retry.folder);
   for (const auto& [name, state] : ledger.all()) {
-    const bool failed = state.has_ended() && state.status == JobStatus::failed;
+    const bool failed = state.has_ended() && state.status == batch::JobStatus::failed;
     if (!failed || fnmatch(retry.match.c_str(), name.c_str(), 0) != 0) continue;
-    manifest.append(BatchEventKind::retry, {{"name", name}});
+    manifest.append(batch::BatchEventKind::retry, {{"name", name}});
     ++count;
   }
   manifest.sync();
@@ -56,7 +57,7 @@ std::size_t ask_again(const BatchRetryRequest& retry) {
 ExitStatus batch_status_command(const BatchStatusRequest& request) {
   constexpr std::chrono::seconds kWatchEvery{2};
   while (true) {
-    const auto rows = read_rows(request.folder);
+    const auto rows = batch::read_rows(request.folder);
     print_status(rows, request.json);
     const BatchTally tally = tally_of(rows);
     const bool over = tally.open == 0 && tally.not_begun == 0;
@@ -69,15 +70,15 @@ ExitStatus batch_table_command(const BatchTableRequest& request, const Registrar
   const auto rows = write_results(request.folder, registrar, nullptr);
   const auto sink = [](std::string_view piece) { std::cout << piece; };
   if (request.json)
-    print_json(rows, head_json(rows), sink);
+    batch::print_json(rows, batch::head_json(rows), sink);
   else
-    print_csv(rows, sink);
+    batch::print_csv(rows, sink);
   return tally_of(rows).exit_status();
 }
 
 ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest request,
                                const Registrar& registrar) {
-  const auto last = last_batch(retry.folder);
+  const auto last = batch::last_batch(retry.folder);
   if (!last.is_object() || !last.contains("arguments")) {
     print_errors(Error(retry.folder.string() + " is no output folder of a batch: it holds no manifest",
                        "give the folder of crisp batch -o"));
@@ -87,7 +88,7 @@ ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest requ
   set_arguments(arguments, request);
   request.output = fs::absolute(retry.folder).lexically_normal();
   const std::size_t count = ask_again(retry);
-  if (!request.run.quiet) std::cerr << counted(count, "recording") << " to be tried again\n";
+  if (!request.run.quiet) std::cerr << data::counted(count, "recording") << " to be tried again\n";
   const bool from_list = std::ranges::find(request.inputs, "-") != request.inputs.end();
   if (from_list && !retry.mark)
     std::cerr << "the recordings came from the standard input: run the batch again with that list\n";
@@ -96,4 +97,4 @@ ExitStatus batch_retry_command(const BatchRetryRequest& retry, BatchRequest requ
   return batch_command(request, registrar);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

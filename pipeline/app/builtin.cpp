@@ -32,26 +32,26 @@ Builtin::Builtin() {
   register_built_in(terms_);
   register_built_in(searches_);
   register_built_in(measures_);
-  register_bag(registrar_);
-  register_capture(registrar_);
-  register_live(registrar_);
-  register_emulate(registrar_);
-  register_record(registrar_);
-  register_pcd(registrar_);
-  register_table(registrar_);
-  register_telegrams(registrar_);
-  register_velodyne(registrar_);
-  register_simulate(registrar_);
-  register_clock(registrar_);
-  register_assemble(registrar_);
-  register_calibrate(registrar_);
-  register_diagnose(registrar_);
-  register_filter(registrar_);
-  register_report(registrar_);
-  register_scans(registrar_);
-  register_study(registrar_);
-  register_watch(registrar_);
-  register_write(registrar_);
+  bag::register_bag(registrar_);
+  capture::register_capture(registrar_);
+  live::register_live(registrar_);
+  emulate::register_emulate(registrar_);
+  record::register_record(registrar_);
+  pcd_grabber::register_pcd(registrar_);
+  table::register_table(registrar_);
+  telegrams::register_telegrams(registrar_);
+  velodyne::register_velodyne(registrar_);
+  simulate::register_simulate(registrar_);
+  clock::register_clock(registrar_);
+  assemble::register_assemble(registrar_);
+  calibrate::register_calibrate(registrar_);
+  diagnose::register_diagnose(registrar_);
+  filter::register_filter(registrar_);
+  report::register_report(registrar_);
+  diagnose::register_scans(registrar_);
+  study::register_study(registrar_);
+  calibrate::register_watch(registrar_);
+  write::register_write(registrar_);
 }
 
 }  // namespace crisp

@@ -12,7 +12,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr int kSignalled = 128;  // as shells count
@@ -73,4 +73,4 @@ CapturedOutput capture_output(std::vector<std::string> words) {
   return output;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

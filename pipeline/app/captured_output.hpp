@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Another program's standard output and exit status.
 struct CapturedOutput {
@@ -16,4 +16,4 @@ struct CapturedOutput {
 /// @throws Error if there is no such program
 CapturedOutput capture_output(std::vector<std::string> words);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -19,7 +19,7 @@
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,7 +40,7 @@ struct ClusterPlan {
 std::optional<std::uint64_t> query_longest_array() {
   try {
     const auto config = capture_output({"scontrol", "show", "config"});
-    return config.status == 0 ? longest_slurm_array(config.text) : std::nullopt;
+    return config.status == 0 ? batch::longest_slurm_array(config.text) : std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -51,7 +51,7 @@ std::uint64_t number_of_tasks(std::uint64_t requested, std::uint64_t recordings)
   std::uint64_t tasks = requested;
   if (tasks > recordings) {
     tasks = recordings;
-    std::cerr << fmt::format("{} instead of {}: there are no more recordings\n", counted(tasks, "task"),
+    std::cerr << fmt::format("{} instead of {}: there are no more recordings\n", data::counted(tasks, "task"),
                              requested);
   }
   const auto most = query_longest_array();
@@ -61,7 +61,7 @@ std::uint64_t number_of_tasks(std::uint64_t requested, std::uint64_t recordings)
   } else if (tasks > *most) {
     tasks = *most;
     std::cerr << fmt::format("{} instead of {}, each with more recordings: the site's MaxArraySize is {}\n",
-                             counted(tasks, "task"), requested, *most + 1);
+                             data::counted(tasks, "task"), requested, *most + 1);
   }
   return tasks;
 }
@@ -74,8 +74,8 @@ void refuse_standard_input(const BatchRequest& request) {
 
 /// Tasks of an earlier submission would only keep those of this one waiting.
 void refuse_running(const fs::path& output) {
-  for (const auto& manifest : manifests_of(output)) {
-    const auto holder = FolderLock::holder_of(manifest.parent_path());
+  for (const auto& manifest : batch::manifests_of(output)) {
+    const auto holder = files::FolderLock::holder_of(manifest.parent_path());
     if (!holder) continue;
     throw Error(
         fmt::format("{} of this batch is running: {}", manifest.parent_path().filename().string(), *holder),
@@ -105,18 +105,20 @@ std::vector<std::string> words_of(const ClusterSubmitRequest& request) {
 }
 
 ClusterPlan plan(const ClusterSubmitRequest& request, std::uint64_t recordings) {
-  ClusterPlan plan{.tasks = number_of_tasks(request.tasks, recordings),
-                   .folder = fs::absolute(task_folder(request.batch.output, "slurm")).lexically_normal()};
-  const std::string log = slurm_log_path((plan.folder / "task").string());
+  ClusterPlan plan{
+      .tasks = number_of_tasks(request.tasks, recordings),
+      .folder = fs::absolute(batch::task_folder(request.batch.output, "slurm")).lexically_normal()};
+  const std::string log = batch::slurm_log_path((plan.folder / "task").string());
   auto options = options_of(request, log + "-%A_%a.log");
   options.insert(options.begin(), {{"array", fmt::format("1-{}", plan.tasks)},
                                    {"cpus-per-task", std::to_string(request.cpus)}});
   const std::string program = own_file().string();
-  plan.batch = complete_slurm_script(
-      kSlurmBatchScript, {.options = std::move(options), .program = program, .words = words_of(request)});
-  plan.merge = complete_slurm_script(
-      kSlurmMergeScript,
-      {.options = options_of(request, slurm_log_path((plan.folder / "merge").string()) + "-%j.log"),
+  plan.batch = batch::complete_slurm_script(
+      batch::kSlurmBatchScript,
+      {.options = std::move(options), .program = program, .words = words_of(request)});
+  plan.merge = batch::complete_slurm_script(
+      batch::kSlurmMergeScript,
+      {.options = options_of(request, batch::slurm_log_path((plan.folder / "merge").string()) + "-%j.log"),
        .program = program,
        .words = {request.batch.output.string()}});
   return plan;
@@ -162,7 +164,7 @@ ExitStatus submit(const ClusterPlan& plan, const ClusterSubmitRequest& request) 
   write_file(plan.batch_script(), plan.batch);
   write_file(plan.merge_script(), plan.merge);
   const std::string job = submit_array(plan);
-  std::cout << fmt::format("job {}: {}\n", job, counted(plan.tasks, "task")) << std::flush;
+  std::cout << fmt::format("job {}: {}\n", job, data::counted(plan.tasks, "task")) << std::flush;
   const auto merge = capture_output(merge_submission(plan, job, request.wait));
   const std::string merge_job = job_of(merge.text);
   if (merge_job.empty())
@@ -171,7 +173,7 @@ ExitStatus submit(const ClusterPlan& plan, const ClusterSubmitRequest& request) 
   std::cout << fmt::format("job {}: the table, after them\nlogs: {}\n", merge_job, plan.folder.string());
   if (request.wait) return static_cast<ExitStatus>(merge.status);
   std::cout << fmt::format("crisp batch status {} reports their progress\n",
-                           bash_quoted(request.batch.output.string()));
+                           batch::bash_quoted(request.batch.output.string()));
   return ExitStatus::done;
 }
 
@@ -181,7 +183,7 @@ ExitStatus cluster_submit_command(const ClusterSubmitRequest& request, const Reg
   ClusterPlan planned;
   try {
     refuse_standard_input(request.batch);
-    const auto batch = check_batch(request.batch, Shard{}, registrar);
+    const auto batch = check_batch(request.batch, batch::Shard{}, registrar);
     refuse_running(request.batch.output);
     planned = plan(request, batch.total);
   } catch (const Error& error) {
@@ -193,4 +195,4 @@ ExitStatus cluster_submit_command(const ClusterSubmitRequest& request, const Reg
   return ExitStatus::done;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

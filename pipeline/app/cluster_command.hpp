@@ -8,7 +8,7 @@
 #include "pipeline/app/batch_request.hpp"
 #include "pipeline/app/commands.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// `crisp cluster submit`.
 struct ClusterSubmitRequest {
@@ -26,4 +26,4 @@ struct ClusterSubmitRequest {
 /// OUTPUT/manifest/slurm.
 ExitStatus cluster_submit_command(const ClusterSubmitRequest& request, const Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -9,7 +9,7 @@
 #include "pipeline/app/usage_message.hpp"
 #include "pipeline/app/whole_number.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr const char* kFooter =
@@ -173,4 +173,4 @@ void CommandLine::add_completion() {
   add_pipeline(completion_app, completed_pipeline, "The pipeline whose settings are meant");
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -18,7 +18,7 @@
 #include "pipeline/app/convert_command.hpp"
 #include "pipeline/app/study_command.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// An option of a command that is one of a stage.
 struct StageOption {
@@ -134,4 +134,4 @@ struct CommandLine {
   void add_completion();
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -4,7 +4,7 @@
 #include "pipeline/app/own_process.hpp"
 #include "pipeline/app/whole_number.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr const char* kJobThreads = "Number of threads per job";
@@ -109,4 +109,4 @@ void CommandLine::add_batch_verbs() {
   batch_retry_app->add_flag("--mark", batch_retry.mark, "Only mark them; the next crisp batch runs them");
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

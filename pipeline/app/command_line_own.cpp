@@ -8,7 +8,7 @@
 #include "pipeline/app/whole_number.hpp"
 #include "pipeline/files/renamed_names.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr const char* kScenes = "Simulated scene: office, hall, street, workshop, garden, people or paper";
@@ -57,8 +57,8 @@ void CommandLine::add_stage_options(
   };
   for (const auto& [name, help] : names_and_help) {
     add(name, help);
-    for (const RenamedName& old : renamed_names()) {
-      if (old.kind == RenamedName::Kind::option && old.owner == stage && old.name == name)
+    for (const files::RenamedName& old : files::renamed_names()) {
+      if (old.kind == files::RenamedName::Kind::option && old.owner == stage && old.name == name)
         add(old.old_name, help)->group("");  // accepted, and not listed
     }
   }
@@ -206,4 +206,4 @@ void CommandLine::add_monte_carlo() {
       ->excludes(monte_carlo_app->get_option("--seed"));
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

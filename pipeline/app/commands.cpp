@@ -22,7 +22,7 @@
 #include "pipeline/stage/reference.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,9 +46,10 @@ bool print_stage_list(const StageRegistry& stages, std::string_view requested) {
 }
 
 ExitStatus write_reference(const StageRegistry& stages, const fs::path& folder) try {
-  const FolderLock lock(folder);
-  for (const auto* type : stages.all()) write_file(folder / (type->name + ".md"), stage_markdown(*type));
-  write_file(folder / "README.md", index_markdown(stages));
+  const files::FolderLock lock(folder);
+  for (const auto* type : stages.all())
+    write_file(folder / (type->name + ".md"), stage::stage_markdown(*type));
+  write_file(folder / "README.md", stage::index_markdown(stages));
   return ExitStatus::done;
 } catch (const Error& error) {
   print_errors(error);
@@ -57,21 +58,22 @@ ExitStatus write_reference(const StageRegistry& stages, const fs::path& folder) 
 
 /// A stage, or a family of them.
 ExitStatus print_named(const StagesRequest& request, const StageRegistry& stages) {
-  const StageType* type = stages.find(current_name(RenamedName::Kind::stage, "", request.name));
+  const StageType* type = stages.find(files::current_name(files::RenamedName::Kind::stage, "", request.name));
   if (!type && print_stage_list(stages, request.name)) return ExitStatus::done;
   if (!type) {
-    print_errors(no_such_stage(request.name, stages));
+    print_errors(stage::no_such_stage(request.name, stages));
     return ExitStatus::misused;
   }
-  std::cout << (request.markdown ? stage_markdown(*type) : stage_text(*type));
+  std::cout << (request.markdown ? stage::stage_markdown(*type) : stage::stage_text(*type));
   return ExitStatus::done;
 }
 
-void validate_rig(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments) {
+void validate_rig(const files::YamlNode& root, const fs::path& file, const PipelineArguments& arguments) {
   if (arguments.rig || !arguments.set.empty())
     throw Error(file.string() + " is a rig", "--rig and --set are for pipelines");
-  const Rig rig = parse_rig(root);
-  std::cout << fmt::format("{}: valid, a rig of {}\n", file.string(), counted(rig.lasers.size(), "laser"));
+  const Rig rig = files::parse_rig(root);
+  std::cout << fmt::format("{}: valid, a rig of {}\n", file.string(),
+                           data::counted(rig.lasers.size(), "laser"));
 }
 
 }  // namespace
@@ -98,15 +100,15 @@ ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, c
   run.registrar = &registrar;
   arguments.only_validate = true;
   try {
-    const YamlNode root = read_yaml(file);
-    if (kind_of(root) == FileKind::rig) {
+    const files::YamlNode root = files::read_yaml(file);
+    if (files::kind_of(root) == files::FileKind::rig) {
       validate_rig(root, file, arguments);
       return ExitStatus::done;
     }
-    const auto loaded = load_pipeline(root, file, arguments, run);
+    const auto loaded = stage::load_pipeline(root, file, arguments, run);
     print_warnings(loaded.pipeline);
     std::cout << fmt::format("{}: valid, {}\n", file.string(),
-                             counted(loaded.pipeline.nodes.size(), "stage"));
+                             data::counted(loaded.pipeline.nodes.size(), "stage"));
   } catch (const Error& error) {
     print_errors(error);
     return ExitStatus::misused;
@@ -117,7 +119,7 @@ ExitStatus validate_command(const fs::path& file, PipelineArguments arguments, c
 ExitStatus stages_command(const StagesRequest& request, const Registrar& registrar) {
   const StageRegistry& stages = registrar.stages();
   if (request.json_schema) {
-    std::cout << json_text(pipeline_schema(stages), 2) << "\n";
+    std::cout << files::json_text(stage::pipeline_schema(stages), 2) << "\n";
   } else if (!request.name.empty()) {
     return print_named(request, stages);
   } else if (request.names) {
@@ -125,8 +127,8 @@ ExitStatus stages_command(const StagesRequest& request, const Registrar& registr
   } else if (request.markdown && request.output) {
     return write_reference(stages, *request.output);
   } else if (request.markdown) {
-    std::cout << index_markdown(stages);
-    for (const auto* type : stages.all()) std::cout << "\n" << stage_markdown(*type);
+    std::cout << stage::index_markdown(stages);
+    for (const auto* type : stages.all()) std::cout << "\n" << stage::stage_markdown(*type);
   } else {
     print_stage_list(stages, {});
   }
@@ -141,7 +143,7 @@ ExitStatus effects_command(const EffectsRequest& request, const Registrar& regis
       std::vector<std::string> names;
       for (const auto& known : catalogue) names.push_back(known.name);
       print_errors(Error("there is no effect '" + request.name + "'",
-                         did_you_mean(request.name, names, "crisp effects lists them")));
+                         files::did_you_mean(request.name, names, "crisp effects lists them")));
       return ExitStatus::misused;
     }
     std::cout << effect_text(*effect);
@@ -172,4 +174,4 @@ void list_plugins(const PluginLoader& loader) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

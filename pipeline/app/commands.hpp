@@ -11,7 +11,7 @@
 #include <crisp/plugin_loader.hpp>
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::app {
 
 /// The program's exit statuses: documented in `crisp --help` and docs/reference/program.md.
 enum class ExitStatus {
@@ -84,4 +84,4 @@ void print_errors(const Error& error);
 /// Prints to stderr what of a pipeline is probably not meant.
 void print_warnings(const Pipeline& pipeline);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -7,7 +7,7 @@
 #include "pipeline/files/yaml.hpp"
 #include "pipeline/stage/pipeline_plan.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 void add_settings(const StageType& type, const std::string& tag, std::vector<std::string>& settings) {
@@ -19,14 +19,14 @@ void add_settings(const StageType& type, const std::string& tag, std::vector<std
   }
 }
 
-std::vector<std::string> settings_of(const YamlNode& root, const std::filesystem::path& folder,
+std::vector<std::string> settings_of(const files::YamlNode& root, const std::filesystem::path& folder,
                                      const StageRegistry& stages) {
   std::vector<std::string> settings;
-  if (const YamlNode* variables = root.find("vars")) {
+  if (const files::YamlNode* variables = root.find("vars")) {
     for (const auto& variable : variables->entries) settings.push_back(variable.key + "=");
   }
   std::vector<Error> ignored;  // crisp validate reports them
-  auto plan = parse_plan(root, folder, {.only_validate = true}, stages, ignored);
+  auto plan = stage::parse_plan(root, folder, {.only_validate = true}, stages, ignored);
   name_stages(plan.stages);
   for (const auto& spec : plan.stages) {
     if (const StageType* type = stages.find(spec.stage)) add_settings(*type, spec.tag, settings);
@@ -47,7 +47,7 @@ std::vector<std::string> settings_to_complete(const std::filesystem::path& pipel
                                               const StageRegistry& stages) {
   std::vector<std::string> settings;
   try {
-    if (!pipeline.empty()) settings = settings_of(read_yaml(pipeline), pipeline.parent_path(), stages);
+    if (!pipeline.empty()) settings = settings_of(files::read_yaml(pipeline), pipeline.parent_path(), stages);
   } catch (const Error&) {
     settings.clear();
   }
@@ -56,4 +56,4 @@ std::vector<std::string> settings_to_complete(const std::filesystem::path& pipel
   return settings;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -7,7 +7,7 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::app {
 
 /// What can stand behind --set: "duration=", "grabber.simulate.motion=constant" for each choice that an
 /// option has.
@@ -20,4 +20,4 @@ std::vector<std::string> settings_to_complete(const std::filesystem::path& pipel
 /// The values that an option of a stage can have, if these can be listed.
 std::vector<std::string> values_to_complete(const Option& option);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -10,7 +10,7 @@
 #include "pipeline/files/list_files.hpp"
 #include "pipeline/pcd/parts.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 /// The ending of a file's name, without its dot, in small letters.
 std::string format_of(const fs::path& file) {
   for (const char* format : {"pcd", "ply", "las"}) {
-    if (has_extension(file, {std::string(".") + format})) return format;
+    if (files::has_extension(file, {std::string(".") + format})) return format;
   }
   throw Error(file.string() + " has the extension of no known format",
               "end the name in .pcd, .ply or .las, or give --format");
@@ -27,9 +27,9 @@ std::string format_of(const fs::path& file) {
 /// The clouds of a folder, each by the name that grabber.cloud reads all of its parts by.
 std::set<fs::path> clouds_in(const fs::path& folder) {
   std::set<fs::path> clouds;
-  for (const auto& file : list_files(folder)) {
-    if (!has_extension(file, {".pcd"}) || file.stem().extension() == ".plate") continue;
-    clouds.insert(whole_of_part(file).value_or(file));
+  for (const auto& file : files::list_files(folder)) {
+    if (!files::has_extension(file, {".pcd"}) || file.stem().extension() == ".plate") continue;
+    clouds.insert(pcd::whole_of_part(file).value_or(file));
   }
   if (clouds.empty()) throw Error(folder.string() + " holds no PCD file", "name another folder, or one file");
   return clouds;
@@ -68,4 +68,4 @@ ExitStatus convert_command(const ConvertRequest& request, const Registrar& regis
   return ExitStatus::misused;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 
 #include "pipeline/app/commands.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// `crisp convert`.
 struct ConvertRequest {
@@ -20,4 +20,4 @@ struct ConvertRequest {
 /// one. A cloud that cannot be converted does not keep the others from it; the status is the worst of all.
 ExitStatus convert_command(const ConvertRequest& request, const Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr const char* kIntroduction =
@@ -81,4 +81,4 @@ std::string effects_markdown(const std::vector<EffectInfo>& catalogue) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 
 #include <crisp/term.hpp>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Full description of an effect, for a terminal.
 std::string effect_text(const EffectInfo& effect);
@@ -14,4 +14,4 @@ std::string effect_text(const EffectInfo& effect);
 /// The catalogue as a page, in Markdown.
 std::string effects_markdown(const std::vector<EffectInfo>& catalogue);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -11,7 +11,7 @@
 #include "pipeline/app/commands.hpp"
 #include "pipeline/files/signal_cleanup.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 std::terminate_handler usual = nullptr;
@@ -33,7 +33,7 @@ bool is_memory_exhausted() {
     constexpr std::string_view kMessage =
         "error: the memory is exhausted; give it less data at once, or end other programs\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
-    remove_files_at_signal();
+    files::remove_files_at_signal();
     _exit(static_cast<int>(ExitStatus::failed));
   }
   usual();
@@ -44,4 +44,4 @@ bool is_memory_exhausted() {
 
 void end_where_memory_is_exhausted() { usual = std::set_terminate(end_program); }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::app {
 
 std::string format_duration(double seconds) {
   if (!(seconds >= 0)) return "?";
@@ -47,4 +47,4 @@ std::string format_count(std::uint64_t count) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

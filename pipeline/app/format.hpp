@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::app {
 
 /// "12 ms", "3.4 s", "2 min 5 s", "1 h 3 min".
 std::string format_duration(double seconds);
@@ -20,4 +20,4 @@ std::string_view first_columns(std::string_view text, std::size_t columns);
 /// "1 234 567".
 std::string format_count(std::uint64_t count);
 
-}  // namespace crisp
+}  // namespace crisp::app

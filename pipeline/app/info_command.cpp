@@ -14,7 +14,7 @@
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/list_files.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ std::string head_of(const fs::path& file) {
   std::string head(kEnough, '\0');
   std::size_t size = 0;
   try {
-    ByteStream stream(file);
+    files::ByteStream stream(file);
     while (size < kEnough) {
       const std::size_t got = stream.read(head.data() + size, kEnough - size);
       if (got == 0) break;
@@ -70,8 +70,9 @@ Error none_known(const fs::path& path, const Inspectors& inspectors) {
 
 /// Whether the file would be of a known kind, by its name.
 bool is_named_like_one(const Inspectors& inspectors, const fs::path& file) {
-  return std::ranges::any_of(
-      inspectors, [&](const Inspector& inspector) { return has_extension(file, inspector.extensions); });
+  return std::ranges::any_of(inspectors, [&](const Inspector& inspector) {
+    return files::has_extension(file, inspector.extensions);
+  });
 }
 
 /// @throws Error if it cannot be read; fs::filesystem_error
@@ -108,7 +109,7 @@ std::vector<Entry> entries_of(const Inspectors& inspectors, const fs::path& path
   if (!fs::is_directory(path, none)) return {entry_of(inspectors, path, rig)};
   std::vector<Entry> entries;
   try {
-    for (const auto& file : list_files(path)) {
+    for (const auto& file : files::list_files(path)) {
       if (is_of_interest(inspectors, file)) entries.push_back(entry_of(inspectors, file, rig));
     }
     if (entries.empty()) throw none_known(path, inspectors);
@@ -181,7 +182,7 @@ ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) 
   if (one && !entries[0].error.empty())
     std::cerr << entries[0].error << "\n";
   else if (request.json)
-    std::cout << json_text(one ? entries[0].inspection.data : json_of(entries), 2) << "\n";
+    std::cout << files::json_text(one ? entries[0].inspection.data : json_of(entries), 2) << "\n";
   else if (are_compared(entries))
     print_compared(entries[0], entries[1]);
   else
@@ -190,4 +191,4 @@ ExitStatus info_command(const InfoRequest& request, const Registrar& registrar) 
   return all_read ? ExitStatus::done : ExitStatus::failed;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

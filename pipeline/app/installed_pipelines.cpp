@@ -12,7 +12,7 @@
 #include "pipeline/app/own_process.hpp"
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,9 +33,10 @@ fs::path InstalledPipelines::find(const fs::path& file_or_name) const {
   const auto known = names();
   throw Error(
       fmt::format("there is no file {}, and no installed pipeline of that name", file_or_name.string()),
-      did_you_mean(file_or_name.string(), known,
-                   known.empty() ? "give the pipeline's YAML file"
-                                 : fmt::format("give a YAML file, or one of {}", fmt::join(known, ", "))));
+      files::did_you_mean(file_or_name.string(), known,
+                          known.empty()
+                              ? "give the pipeline's YAML file"
+                              : fmt::format("give a YAML file, or one of {}", fmt::join(known, ", "))));
 }
 
 std::vector<std::string> InstalledPipelines::names() const {
@@ -56,4 +57,4 @@ InstalledPipelines pipelines_of_program() {
   return InstalledPipelines::of_folder(own_file().parent_path(), CRISP_CONFIGS_FROM_BIN);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

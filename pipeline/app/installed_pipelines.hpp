@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::app {
 
 /// The pipelines that are installed with crisp, which can be called by name.
 class InstalledPipelines {
@@ -36,4 +36,4 @@ class InstalledPipelines {
 /// Pipelines of this program, wherever it is installed.
 InstalledPipelines pipelines_of_program();
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -18,7 +18,7 @@
 #include "pipeline/data/exception_to_error.hpp"
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -212,7 +212,7 @@ bool is_command_of(const CLI::App& app, const std::string& word, const std::vect
   if (word.starts_with("-") || std::ranges::find(known, word) != known.end()) return true;
   known.insert(known.end(), further.begin(), further.end());
   print_errors(Error("there is no command '" + name.substr(name.find(' ') + 1) + word + "'",
-                     did_you_mean(word, known, name + "--help lists them")));
+                     files::did_you_mean(word, known, name + "--help lists them")));
   return false;
 }
 
@@ -264,7 +264,7 @@ int guarded_main(int given, char** given_words) {
 }
 
 }  // namespace
-}  // namespace crisp
+}  // namespace crisp::app
 
 namespace {
 
@@ -278,8 +278,8 @@ bool nobody_reads() {
 int after_output(int status) {
   std::cout.flush();
   if (std::cout || nobody_reads()) return status;
-  crisp::print_errors(crisp::Error("cannot write to the standard output", "make room on the disk"));
-  return status == 0 ? static_cast<int>(crisp::ExitStatus::failed) : status;
+  crisp::app::print_errors(crisp::Error("cannot write to the standard output", "make room on the disk"));
+  return status == 0 ? static_cast<int>(crisp::app::ExitStatus::failed) : status;
 }
 
 }  // namespace
@@ -287,15 +287,15 @@ int after_output(int status) {
 int main(int count, char** words) {
   std::signal(SIGXFSZ,
               SIG_IGN);  // a file beyond the shell's limit is an error as on a full disk, not the end
-  crisp::end_where_memory_is_exhausted();
+  crisp::app::end_where_memory_is_exhausted();
   try {
-    return after_output(crisp::guarded_main(count, words));
+    return after_output(crisp::app::guarded_main(count, words));
   } catch (const crisp::Error& error) {
-    crisp::print_errors(error);
+    crisp::app::print_errors(error);
   } catch (const std::exception& error) {
-    crisp::print_errors(crisp::error_of(error));
+    crisp::app::print_errors(crisp::data::error_of(error));
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";
   }
-  return static_cast<int>(crisp::ExitStatus::failed);
+  return static_cast<int>(crisp::app::ExitStatus::failed);
 }

@@ -13,7 +13,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace asio = boost::asio;
@@ -101,4 +101,4 @@ MetricsServer::~MetricsServer() {
 
 std::uint16_t MetricsServer::port() const { return server_->acceptor.local_endpoint().port(); }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Answers `GET /metrics` over HTTP with a text, at 127.0.0.1 alone, in a thread of its own.
 class MetricsServer {
@@ -28,4 +28,4 @@ class MetricsServer {
   std::unique_ptr<Server> server_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Pipelines that are commands of their own: the files in configs/, as they were when crisp was built.
 extern const std::string_view kBasinPipeline;
@@ -17,4 +17,4 @@ extern const std::string_view kMonteCarloPipeline;
 extern const std::string_view kRecordPipeline;
 extern const std::string_view kReportPipeline;
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -8,7 +8,7 @@
 
 #include "pipeline/batch/slurm_environment.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 std::filesystem::path own_file() {
   std::error_code unknown;
@@ -17,7 +17,7 @@ std::filesystem::path own_file() {
 
 unsigned own_cores() {
   const auto variable = [](const char* name) -> const char* { return std::getenv(name); };
-  return cores_of_slurm(variable).value_or(std::max(1U, std::thread::hardware_concurrency()));
+  return batch::cores_of_slurm(variable).value_or(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace crisp {
+namespace crisp::app {
 
 /// The file of this program; empty where the system does not name it.
 std::filesystem::path own_file();
@@ -11,4 +11,4 @@ std::filesystem::path own_file();
 /// Number of cores for this process: those that Slurm allocated to it, or those of the machine.
 unsigned own_cores();
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -8,7 +8,7 @@
 
 #include "pipeline/app/format.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::string ProgressPrinter::line(const Progress& progress, double now) const {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -7,7 +7,7 @@
 
 #include <crisp/context.hpp>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Shows how far a run is: on a terminal as one line that is refreshed (bar, per cent, rate, time left),
 /// elsewhere as plain lines, when a stage begins to report and then at most every ten seconds.
@@ -48,4 +48,4 @@ class ProgressPrinter {
   bool status_shown_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -14,7 +14,7 @@
 #include "pipeline/stage/files_written.hpp"
 #include "pipeline/stage/reference.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ void check_input(const std::optional<fs::path>& input) {
   if (failure)
     throw Error("the input " + input->string() + " cannot be read: " + failure.message(),
                 "check its path and its permissions");
-  if (!fs::exists(part_path(*input, 1), failure))
+  if (!fs::exists(pcd::part_path(*input, 1), failure))
     throw Error("there is no input " + input->string(), "check the name after -i");
 }
 
@@ -51,19 +51,19 @@ RecordedRun::RecordedRun(const RunRequest& request, const Registrar& registrar)
   check_input(request.arguments.input);
   // Checks before the work, and not after it, that the folder is writable.
   if (!settings_.output.empty()) {
-    lock_ = std::make_unique<FolderLock>(settings_.output);
+    lock_ = std::make_unique<files::FolderLock>(settings_.output);
     remove_left_over_parts(settings_.output);
     // The file describes an earlier run and must not remain next to this run's files.
     std::error_code not_there;
-    fs::remove(settings_.output / kSummary, not_there);
+    fs::remove(settings_.output / stage::kSummary, not_there);
   }
-  record_.command = command_of_this_process();
+  record_.command = files::command_of_this_process();
   record_.pipeline_file = loaded_.file;
   record_.rig_file = loaded_.rig_file;
   record_.seed = settings_.seed;
   record_.threads = settings_.threads;
-  record_.started = utc_now();
-  for (const auto& node : loaded_.pipeline.nodes) record_.options.push_back(effective_options(node));
+  record_.started = files::utc_now();
+  for (const auto& node : loaded_.pipeline.nodes) record_.options.push_back(stage::effective_options(node));
 }
 
 void RecordedRun::run(RunHooks hooks) {
@@ -105,4 +105,4 @@ bool RecordedRun::keep(const std::function<void(const Error&)>& report) {
   return all_kept;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

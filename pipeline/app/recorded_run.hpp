@@ -10,7 +10,7 @@
 #include "pipeline/app/run_record.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// One run of a pipeline, and its records: summary.json in the output folder, and a provenance record next to
 /// each file that a stage writes. The output folder is locked while this object lives.
@@ -41,8 +41,8 @@ class RecordedRun {
 
   RunSettings settings_;
   LoadedPipeline loaded_;
-  std::unique_ptr<FolderLock> lock_;
+  std::unique_ptr<files::FolderLock> lock_;
   RunRecord record_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

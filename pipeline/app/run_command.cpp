@@ -18,7 +18,7 @@
 #include "pipeline/app/terminal.hpp"
 #include "pipeline/files/utc_now.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 std::vector<std::string> tags_of(const Pipeline& pipeline) {
@@ -39,7 +39,8 @@ void run_with_progress(RecordedRun& run, const RunRequest& request) {
     hooks.status = [&](const std::string& tag, const StageStatus& status) {
       board.set_status(tag, status);
       if (request.quiet) return;
-      for (const auto& event : status.events) printer.log(fmt::format("{} {}: {}", utc_now(), tag, event));
+      for (const auto& event : status.events)
+        printer.log(fmt::format("{} {}: {}", files::utc_now(), tag, event));
       printer.show_status(board.line());
     };
   }
@@ -104,4 +105,4 @@ ExitStatus run_command(const RunRequest& request, const Registrar& registrar) {
   return run_loaded(*run, request);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -13,7 +13,7 @@
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/files_written.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,7 +56,7 @@ Json outputs_json(const StageReport& report) {
 
 std::string dump(const Json& json) {
   // Texts from files may hold anything; what is no UTF-8 is replaced instead of throwing.
-  return json_text(json, 2) + "\n";
+  return files::json_text(json, 2) + "\n";
 }
 
 /// The stage that wrote this file; nullptr if none did.
@@ -102,7 +102,7 @@ std::vector<InputRecord> hash_inputs(const RunRecord& record) {
     const auto same = [&](const InputRecord& input) { return input.file == file; };
     std::error_code failure;
     if (!fs::is_regular_file(file, failure) || std::any_of(inputs.begin(), inputs.end(), same)) continue;
-    inputs.push_back({file, digest_of(file)});
+    inputs.push_back({file, files::digest_of(file)});
   }
   return inputs;
 }
@@ -167,7 +167,7 @@ void write_provenance(const RunRecord& record) {
 
 void write_summary(const RunRecord& record, const fs::path& folder) {
   if (folder.empty()) return;
-  write_record(folder / kSummary, summary_json(record), record);
+  write_record(folder / stage::kSummary, summary_json(record), record);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

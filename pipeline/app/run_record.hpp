@@ -11,12 +11,12 @@
 
 #include "pipeline/files/sha256.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// A file that a run read, and what was in it.
 struct InputRecord {
   std::filesystem::path file;
-  FileDigest digest;
+  files::FileDigest digest;
 };
 
 /// The complete record of a finished run.
@@ -61,4 +61,4 @@ void write_provenance(const RunRecord& record);
 /// @throws Error  if it cannot be written
 void write_summary(const RunRecord& record, const std::filesystem::path& folder);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -9,7 +9,7 @@
 
 #include "pipeline/files/signal_cleanup.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 // Signal handlers reach nothing but objects of static storage; lock-free atomics are what they may write.
@@ -30,7 +30,7 @@ void handle(void (*handler)(int)) {
 }
 
 void end_at_once(int signal) {
-  remove_files_at_signal();
+  files::remove_files_at_signal();
   raise(signal);
 }
 
@@ -66,4 +66,4 @@ StopNotice::StopNotice(std::ostream& out)
         if (stop_requested) out << "\nstopping; a second signal ends the program at once" << std::endl;
       }) {}
 
-}  // namespace crisp
+}  // namespace crisp::app

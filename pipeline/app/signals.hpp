@@ -5,7 +5,7 @@
 #include <iosfwd>
 #include <thread>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Once constructed, stops the run at the first SIGINT, SIGTERM or SIGHUP; a second one ends the program at
 /// once.
@@ -29,4 +29,4 @@ class StopNotice {
   std::jthread watch_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 /// A text between the quotes of a label.
@@ -57,4 +57,4 @@ std::string StatusBoard::prometheus() const {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

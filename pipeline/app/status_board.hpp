@@ -9,7 +9,7 @@
 
 #include <crisp/context.hpp>
 
-namespace crisp {
+namespace crisp::app {
 
 /// The latest status of each stage of a run. Thread-safe.
 class StatusBoard {
@@ -30,4 +30,4 @@ class StatusBoard {
   std::map<std::string, StageStatus> reported_;  ///< by tag
 };
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 #include "pipeline/batch/effective_settings.hpp"
 #include "pipeline/batch/shard.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 constexpr const char* kParts = "parts";
@@ -17,8 +17,8 @@ std::string settings_of(const RunRequest& request, const Registrar& registrar) {
   arguments.output = "/${output}";
   RunSettings run;
   run.registrar = &registrar;
-  return digest_of_settings(
-      effective_settings(load_pipeline(request.text, request.file, arguments, run), request.seed));
+  return batch::digest_of_settings(
+      batch::effective_settings(load_pipeline(request.text, request.file, arguments, run), request.seed));
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ ExitStatus study_command(StudyRequest request, const Registrar& registrar) {
     if (request.merge) {
       set("merge", (*output / kParts).string());
     } else {
-      const Shard shard = parse_shard(request.shard);
+      const batch::Shard shard = batch::parse_shard(request.shard);
       set("part", shard.text());
       output = *output / kParts / fmt::format("{}-of-{}", shard.number, shard.count);
     }
@@ -46,4 +46,4 @@ ExitStatus study_command(StudyRequest request, const Registrar& registrar) {
   return run_command(request.run, registrar);
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

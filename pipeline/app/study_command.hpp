@@ -5,7 +5,7 @@
 
 #include "pipeline/app/commands.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// `crisp monte-carlo` and `crisp basin`.
 struct StudyRequest {
@@ -19,4 +19,4 @@ struct StudyRequest {
 /// writes is the same as that of a study without parts.
 ExitStatus study_command(StudyRequest request, const Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -11,7 +11,7 @@
 #include "pipeline/app/format.hpp"
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 /// The text with every line indented.
@@ -36,7 +36,7 @@ std::string stage_summary(const NodeResult& node, const nlohmann::ordered_json& 
   if (verbose) {
     text += flow_text(node);
     for (const auto& [name, value] : options.items())
-      text += fmt::format("  {} = {}\n", name, json_text(value));
+      text += fmt::format("  {} = {}\n", name, files::json_text(value));
   }
   for (const auto& caveat : node.report.caveats) text += indented("UNTRUSTED: " + caveat, "  ");
   for (const auto& line : node.report.lines) text += indented(line, "  ");
@@ -95,4 +95,4 @@ std::string warnings_text(const RunRecord& record) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

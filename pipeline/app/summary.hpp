@@ -5,7 +5,7 @@
 
 #include "pipeline/app/run_record.hpp"
 
-namespace crisp {
+namespace crisp::app {
 
 /// Text for people at the end of a run: each stage's report, losses and durations.
 /// @param verbose  also the effective options, the data flow, and counts that are 0
@@ -17,4 +17,4 @@ std::string failure_text(const RunRecord& record);
 /// Warnings and caveats only, for --quiet.
 std::string warnings_text(const RunRecord& record);
 
-}  // namespace crisp
+}  // namespace crisp::app

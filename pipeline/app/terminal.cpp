@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace crisp {
+namespace crisp::app {
 
 std::size_t terminal_width() {
   winsize size{};
@@ -17,4 +17,4 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Columns of the terminal that the standard error goes to; 0 if there is none.
 std::size_t terminal_width();
@@ -11,4 +11,4 @@ std::size_t terminal_width();
 /// [s] since any fixed moment; never goes back.
 double seconds_now();
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -6,7 +6,7 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::app {
 namespace {
 
 std::vector<std::string> options_of(const CLI::App& command) {
@@ -25,7 +25,7 @@ std::string not_expected(const CLI::App& command) {
   const auto option = std::ranges::find_if(words, [](const auto& word) { return word.starts_with("--"); });
   if (option == words.end()) return text;
   const std::string name = option->substr(0, option->find('='));
-  const std::string hint = did_you_mean(name, options_of(command), {});
+  const std::string hint = files::did_you_mean(name, options_of(command), {});
   return hint.empty() ? text : text + "; " + hint;
 }
 
@@ -43,4 +43,4 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   return "error: " + what + "; see " + name + " --help\n";
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-namespace crisp {
+namespace crisp::app {
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const std::string range = std::to_string(least) + " to " + std::to_string(most);
@@ -20,4 +20,4 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return CLI::Validator(refuse, "", "whole_number");
 }
 
-}  // namespace crisp
+}  // namespace crisp::app

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
-namespace crisp {
+namespace crisp::app {
 
 /// Refuses what is no whole number from `least` to `most`.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
-}  // namespace crisp
+}  // namespace crisp::app

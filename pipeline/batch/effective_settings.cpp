@@ -11,7 +11,7 @@
 #include "pipeline/files/sha256.hpp"
 #include "pipeline/stage/reference.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,8 +26,9 @@ Json stages_json(const Pipeline& pipeline) {
     for (const auto& feeders : node.feeders) {
       for (const std::size_t feeder : feeders) fed_by.push_back(pipeline.nodes[feeder].tag);
     }
-    stages[node.tag] = {
-        {"stage", node.type->name}, {"inputs", std::move(fed_by)}, {"options", effective_options(node)}};
+    stages[node.tag] = {{"stage", node.type->name},
+                        {"inputs", std::move(fed_by)},
+                        {"options", stage::effective_options(node)}};
   }
   return stages;
 }
@@ -51,7 +52,7 @@ Json files_json(const LoadedPipeline& loaded) {
   Json files = Json::object();
   const auto add = [&](const fs::path& file) {
     std::error_code none;
-    if (fs::is_regular_file(file, none)) files[file.string()] = digest_of(file).sha256;
+    if (fs::is_regular_file(file, none)) files[file.string()] = files::digest_of(file).sha256;
   };
   if (!loaded.rig_file.empty()) add(loaded.rig_file);
   for (const auto& node : loaded.pipeline.nodes) {
@@ -66,7 +67,7 @@ void add_changes(const std::string& at, const Json& before, const Json& now,
                  std::vector<std::string>& changes) {
   if (before == now) return;
   if (!before.is_object() || !now.is_object()) {
-    changes.push_back(fmt::format("{}: {} → {}", at, json_text(before), json_text(now)));
+    changes.push_back(fmt::format("{}: {} → {}", at, files::json_text(before), files::json_text(now)));
     return;
   }
   for (const auto& [key, value] : before.items()) {
@@ -93,7 +94,7 @@ Json effective_settings(const LoadedPipeline& loaded, std::uint64_t seed) {
 
 std::string digest_of_settings(const Json& settings) {
   constexpr std::size_t kDigits = 16;
-  return sha256_of(json_text(settings)).substr(0, kDigits);
+  return files::sha256_of(files::json_text(settings)).substr(0, kDigits);
 }
 
 std::vector<std::string> changes_of_settings(const Json& before, const Json& now) {
@@ -120,15 +121,15 @@ void check_depends_on_recording(const LoadedPipeline& one, const LoadedPipeline&
   for (std::size_t i = 0; i < one.pipeline.nodes.size(); ++i) {
     const PipelineNode& node = one.pipeline.nodes[i];
     for (const auto& option : node.type->options) {
-      const Json value = to_json(node.value(option));
-      const bool differs = value != Json(to_json(other.pipeline.nodes[i].value(option)));
+      const Json value = stage::to_json(node.value(option));
+      const bool differs = value != Json(stage::to_json(other.pipeline.nodes[i].value(option)));
       const bool writes = option.is_folder || !option.writes.empty();
       if (differs && !writes) depends = true;
       const bool is_path = value.is_string() && !value.get<std::string>().empty() && value != "auto";
       if (differs || !writes || !is_path) continue;
-      errors.add(Error(
-          fmt::format("{}: each recording would overwrite {} of the one before", node.tag, json_text(value)),
-          "begin the path with ${output}, or include ${name}", node.place_of(option.name)));
+      errors.add(Error(fmt::format("{}: each recording would overwrite {} of the one before", node.tag,
+                                   files::json_text(value)),
+                       "begin the path with ${output}, or include ${name}", node.place_of(option.name)));
     }
   }
   if (!depends) {
@@ -138,4 +139,4 @@ void check_depends_on_recording(const LoadedPipeline& one, const LoadedPipeline&
   errors.throw_any();
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -8,7 +8,7 @@
 
 #include <crisp/pipeline_file.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The inputs of a batch's results besides its recordings: crisp's version, the seed, the rig,
 /// every stage with its effective options and what feeds it, and the content of the files that options name.
@@ -28,4 +28,4 @@ std::vector<std::string> changes_of_settings(const nlohmann::ordered_json& befor
 /// @throws Errors
 void check_depends_on_recording(const LoadedPipeline& one, const LoadedPipeline& other);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <system_error>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ std::vector<fs::path> match_pattern(const std::string& pattern) {
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

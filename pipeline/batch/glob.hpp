@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Whether a path is a pattern: has one of `*`, `?` and `[`.
 bool is_pattern(const std::string& path);
@@ -17,4 +17,4 @@ std::filesystem::path fixed_part(const std::string& pattern);
 /// number of folders. What begins with a dot is matched only by what begins with one.
 std::vector<std::filesystem::path> match_pattern(const std::string& pattern);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -13,7 +13,7 @@
 #include "pipeline/files/list_files.hpp"
 #include "pipeline/files/sha256.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> paths_of(const BatchInput& input, const fs::path& rig) {
   std::vector<fs::path> paths;
   if (input.is_folder)
-    paths = list_files(input.path);
+    paths = files::list_files(input.path);
   else
     paths = {input.path};
   std::erase_if(paths, [](const fs::path& path) { return path.filename().string().starts_with("."); });
@@ -64,9 +64,10 @@ bool has_same_content(const std::vector<InputFile>& before, const std::vector<In
   if (!may_be) return false;
   const auto paths = paths_of(input, rig);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (before[i].mtime != now[i].mtime && digest_of(paths[i]).sha256 != before[i].sha256) return false;
+    if (before[i].mtime != now[i].mtime && files::digest_of(paths[i]).sha256 != before[i].sha256)
+      return false;
   }
   return true;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -8,7 +8,7 @@
 
 #include "pipeline/batch/recording.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// A file that a recording's results depend on, as it was.
 struct InputFile {
@@ -34,4 +34,4 @@ bool is_untouched(const std::vector<InputFile>& before, const std::vector<InputF
 bool has_same_content(const std::vector<InputFile>& before, const std::vector<InputFile>& now,
                       const BatchInput& input, const std::filesystem::path& rig);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::batch {
 
 std::string join_fields(const std::vector<std::string>& fields) {
   std::string message;
@@ -56,4 +56,4 @@ JobEnd job_end_of(const std::vector<std::string>& fields) {
           .error = fields.at(6)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -6,7 +6,7 @@
 
 #include "pipeline/batch/launcher.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Longest message between a batch and its launcher [bytes].
 inline constexpr std::size_t kLongestJobMessage = 64 * 1024;
@@ -21,4 +21,4 @@ Job job_of(const std::vector<std::string>& fields);
 std::string to_message(const JobEnd& end);
 JobEnd job_end_of(const std::vector<std::string>& fields);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -12,7 +12,7 @@
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/stage/files_written.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,7 +45,7 @@ void add_calibration(const fs::path& file, Json& results) {
 
 void add_findings(const fs::path& file, Json& results) {
   Json& causes = results["causes"] = Json::array();
-  for (const auto& finding : read_findings(file).findings) {
+  for (const auto& finding : files::read_findings(file).findings) {
     if (finding.accepted) causes.push_back({{"cause", finding.cause}, {"scope", finding.scope}});
   }
 }
@@ -64,7 +64,7 @@ void add_stage(const Json& stage, Json& results) {
 }
 
 void read_summary(Json summary, JobResults& results) {
-  rename_old_keys(summary, "summary");
+  files::rename_old_keys(summary, "summary");
   if (summary.contains("error")) results.json["error"] = summary["error"];
   for (const auto& input : summary.at("inputs")) results.sha256[input.at("file")] = input.at("sha256");
   for (const auto& stage : summary.at("stages")) {
@@ -80,19 +80,20 @@ void read_summary(Json summary, JobResults& results) {
 
 JobResults read_results(const fs::path& output) {
   JobResults results;
-  std::ifstream stream(output / kSummary);
+  std::ifstream stream(output / stage::kSummary);
   if (!stream) return results;
   try {
     read_summary(Json::parse(stream), results);
   } catch (const std::exception& error) {  // stated by the summary, or thrown while reading it
-    results.json["reasons"].push_back((output / kSummary).string() + " cannot be read: " + error.what());
+    results.json["reasons"].push_back((output / stage::kSummary).string() +
+                                      " cannot be read: " + error.what());
   }
   return results;
 }
 
 void remove_summary(const fs::path& output) {
   std::error_code none;
-  fs::remove(output / kSummary, none);
+  fs::remove(output / stage::kSummary, none);
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

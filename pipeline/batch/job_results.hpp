@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Results in a job's output folder, for the table.
 struct JobResults {
@@ -24,4 +24,4 @@ JobResults read_results(const std::filesystem::path& output);
 /// Removes the summary of an earlier job, which must not be taken for that of the next.
 void remove_summary(const std::filesystem::path& output);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -11,7 +11,7 @@
 
 #include "pipeline/files/folder_lock.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -60,7 +60,7 @@ void judge(const JobEnd& end, const JobCircumstances& circumstances, const Json&
   } else if (is_interrupted(end.exit_status)) {
     verdict.status = JobStatus::interrupted;
     verdict.failure = fmt::format("it was killed from outside by signal {}", end.exit_status - 128);
-  } else if (end.exit_status == kRefused && FolderLock::is_refusal(end.error)) {
+  } else if (end.exit_status == kRefused && files::FolderLock::is_refusal(end.error)) {
     verdict.status = JobStatus::interrupted;
     verdict.failure = trimmed(end.error);
   } else if (end.exit_status == 3) {
@@ -142,4 +142,4 @@ JobVerdict refused_input(const Error& error) {
   return verdict;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

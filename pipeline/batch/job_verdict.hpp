@@ -15,7 +15,7 @@
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/run_batch.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The outcome of an ended job, as the manifest records it.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON checks what it holds
@@ -43,4 +43,4 @@ JobVerdict refused_input(const Error& error);
 /// Whether a message reports that a file could not be written for lack of disk space.
 bool is_disk_full_error(std::string_view message);
 
-}  // namespace crisp
+}  // namespace crisp::batch

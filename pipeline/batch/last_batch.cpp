@@ -9,7 +9,7 @@
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/manifest_line.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 nlohmann::ordered_json last_batch(const std::filesystem::path& output) {
   std::string last;
@@ -29,4 +29,4 @@ nlohmann::ordered_json last_batch(const std::filesystem::path& output) {
   return last.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json::parse(last);
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

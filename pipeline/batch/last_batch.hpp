@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The event of the batch that began last in an output folder; null if none did. Nothing else of the
 /// manifests is kept or parsed.
 /// @throws Error if a manifest cannot be read
 nlohmann::ordered_json last_batch(const std::filesystem::path& output);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -19,7 +19,7 @@
 #include "pipeline/batch/job_message.hpp"
 #include "pipeline/batch/running_jobs.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 /// The next message, of whole length; nothing if the other end is closed or there is none just now.
@@ -133,4 +133,4 @@ std::optional<JobEnd> JobLauncher::wait(std::chrono::milliseconds limit) const {
               "run the batch again: it continues where it stopped");
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// One recording to be processed by a process of its own.
 struct Job {
@@ -65,4 +65,4 @@ class JobLauncher {
   int socket_ = -1;
 };
 
-}  // namespace crisp
+}  // namespace crisp::batch

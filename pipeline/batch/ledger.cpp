@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace crisp {
+namespace crisp::batch {
 
 BatchLedger BatchLedger::read(const std::filesystem::path& output,
                               const std::function<bool(std::string_view name)>& requested) {
@@ -64,4 +64,4 @@ DueReason due_reason(const RecordingState* state, const std::string& settings) {
   return DueReason::none;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

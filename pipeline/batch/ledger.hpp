@@ -13,7 +13,7 @@
 
 #include "pipeline/batch/manifest.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// A recording's state by the manifests. There may be a million of them: texts that many share are views
 /// of the ledger's.
@@ -63,4 +63,4 @@ class BatchLedger {
 /// @param settings  digest of what it would be processed with
 DueReason due_reason(const RecordingState* state, const std::string& settings);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -22,7 +22,7 @@
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,7 +81,7 @@ ManifestWriter::~ManifestWriter() { close(descriptor_); }
 void ManifestWriter::append(BatchEventKind kind, const Json& event) {
   Json whole = {{"event", name_of(kind)}, {"time", utc_milliseconds()}};
   whole.update(event);
-  const std::string line = json_text(whole) + "\n";
+  const std::string line = files::json_text(whole) + "\n";
   const off_t before = lseek(descriptor_, 0, SEEK_END);
   const ssize_t written = write(descriptor_, line.data(), line.size());
   is_synced_ = false;
@@ -143,4 +143,4 @@ Json to_json(const std::vector<InputFile>& files) {
   return list;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -11,7 +11,7 @@
 
 #include "pipeline/batch/input_state.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Kinds of events in a batch. docs/how-to/batch.md has the schema of the lines.
 enum class BatchEventKind {
@@ -85,4 +85,4 @@ std::vector<std::filesystem::path> manifests_of(const std::filesystem::path& out
 /// An event's record of its input files.
 nlohmann::ordered_json to_json(const std::vector<InputFile>& files);
 
-}  // namespace crisp
+}  // namespace crisp::batch

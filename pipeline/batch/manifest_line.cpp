@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 constexpr std::array kKinds = {"batch", "start", "end", "same", "retry"};
@@ -126,4 +126,4 @@ std::optional<BatchEvent> parse_manifest_line(std::string_view line) {
   return std::move(reader.event);
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

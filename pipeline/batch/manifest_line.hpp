@@ -6,7 +6,7 @@
 
 #include "pipeline/batch/manifest.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 std::string_view name_of(BatchEventKind kind);
 
@@ -15,4 +15,4 @@ std::string_view name_of(BatchEventKind kind);
 /// @return nothing if the line is no event
 std::optional<BatchEvent> parse_manifest_line(std::string_view line);
 
-}  // namespace crisp
+}  // namespace crisp::batch

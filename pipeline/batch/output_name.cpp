@@ -7,7 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 bool is_utf8(std::string_view text) {
@@ -39,4 +39,4 @@ bool is_reserved_output(std::string_view name) {
   return std::ranges::find(kReserved, name.substr(0, name.find('/'))) != kReserved.end();
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Files of a batch itself in its output folder.
 inline constexpr const char* kBatchManifest = "manifest";  ///< a folder, in it a folder a task
@@ -20,4 +20,4 @@ std::string output_name(std::string_view path);
 /// Whether a recording of this name would write where the batch itself does.
 bool is_reserved_output(std::string_view name);
 
-}  // namespace crisp
+}  // namespace crisp::batch

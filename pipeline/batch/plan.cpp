@@ -5,7 +5,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 /// Whether the input is that of the state; adds it to `touched` if only its time is another.
@@ -64,4 +64,4 @@ std::string in_words(DueReason reason) {
   return "nothing changed";
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -11,7 +11,7 @@
 #include "pipeline/batch/ledger.hpp"
 #include "pipeline/batch/run_batch.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// An input whose time changed and whose content did not.
 struct TouchedInput {
@@ -40,4 +40,4 @@ BatchPlan plan_batch(std::vector<BatchInput> inputs, const BatchLedger& ledger, 
 /// Why recordings are due, in words: "the input changed".
 std::string in_words(DueReason reason);
 
-}  // namespace crisp
+}  // namespace crisp::batch

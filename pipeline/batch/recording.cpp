@@ -15,7 +15,7 @@
 #include "pipeline/batch/output_name.hpp"
 #include "pipeline/files/list_files.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,7 +65,7 @@ class Finder {
   }
 
   bool is_list(const fs::path& file) const {
-    return file.extension() == ".txt" && !has_extension(file, inputs_.extensions);
+    return file.extension() == ".txt" && !files::has_extension(file, inputs_.extensions);
   }
 
   bool is_output(const fs::path& path) const { return path == output_ || is_inside(path, output_); }
@@ -111,7 +111,7 @@ class Finder {
       if (path.filename().native().starts_with(".") || (is_folder && path == output_)) continue;
       if (is_folder) {
         add_folder(path, base, above);
-      } else if (has_extension(path, inputs_.extensions)) {
+      } else if (files::has_extension(path, inputs_.extensions)) {
         holds_recordings = true;
         if (inputs_.unit == BatchUnit::file) add_recording(path, base, {});
       }
@@ -199,4 +199,4 @@ std::vector<BatchInput> find_recordings(const BatchInputs& inputs) {
   return recordings;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

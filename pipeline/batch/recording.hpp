@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// Input of one job: a file, or a folder of captures of one scanner.
 struct BatchInput {
@@ -35,4 +35,4 @@ struct BatchInputs {
 /// @throws Errors  what was given and is not there, and inputs that would share an output
 std::vector<BatchInput> find_recordings(const BatchInputs& inputs);
 
-}  // namespace crisp
+}  // namespace crisp::batch

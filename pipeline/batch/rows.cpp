@@ -9,7 +9,7 @@
 #include "pipeline/batch/table.hpp"
 #include "pipeline/files/folder_lock.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,7 +90,7 @@ class RowReader {
   /// Whether the task has its lock.
   bool is_running(std::string_view task) {
     const auto [known, is_new] = running_.try_emplace(task);
-    if (is_new) known->second = FolderLock::holder_of(task).has_value();
+    if (is_new) known->second = files::FolderLock::holder_of(task).has_value();
     return known->second;
   }
 
@@ -136,4 +136,4 @@ BatchRows read_rows(const fs::path& output) {
   return reader.finish();
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

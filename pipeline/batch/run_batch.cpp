@@ -11,7 +11,7 @@
 
 #include "pipeline/batch/job_verdict.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -181,4 +181,4 @@ BatchOutcome run_batch(const std::vector<DueRecording>& due, const std::filesyst
   return Batch(due, output, settings, limits, launcher, manifest, hooks).run();
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

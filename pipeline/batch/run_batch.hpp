@@ -13,7 +13,7 @@
 #include "pipeline/batch/manifest.hpp"
 #include "pipeline/batch/recording.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// A recording that is to be processed.
 struct DueRecording {
@@ -62,4 +62,4 @@ BatchOutcome run_batch(const std::vector<DueRecording>& due, const std::filesyst
                        const std::string& settings, const BatchLimits& limits, JobLauncher& launcher,
                        ManifestWriter& manifest, const BatchHooks& hooks);
 
-}  // namespace crisp
+}  // namespace crisp::batch

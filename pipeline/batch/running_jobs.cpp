@@ -16,7 +16,7 @@
 
 #include "pipeline/data/exception_to_error.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 constexpr std::size_t kMaxPrinted = 16 * 1024;  // [bytes] that are kept of what a job prints
@@ -65,7 +65,7 @@ void RunningJobs::become(const Job& job, int error) const {
   try {
     status = run_(job);
   } catch (const std::exception& failure) {
-    const Error error = error_of(failure);
+    const Error error = data::error_of(failure);
     std::cerr << "error: " << error.what() << "\n";
   } catch (...) {
     std::cerr << "error: a plugin threw something that is no std::exception\n";
@@ -159,4 +159,4 @@ std::vector<JobEnd> RunningJobs::reap() {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

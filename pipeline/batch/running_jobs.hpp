@@ -11,7 +11,7 @@
 
 #include "pipeline/batch/launcher.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The processes of the jobs that run, as the launcher's process sees them: it starts, signals and reaps
 /// them.
@@ -51,4 +51,4 @@ class RunningJobs {
   std::map<pid_t, Running> running_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::batch

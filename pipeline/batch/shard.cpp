@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo), with the finalizer of MurmurHash3, since remainders use the low bits.
@@ -42,4 +42,4 @@ Shard parse_shard(const std::string& text) {
   throw Error("--shard: '" + text + "' is no part of a batch", "write the third of 64 as 3/64");
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

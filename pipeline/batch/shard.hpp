@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// One part of a batch: each recording belongs to one of `count` parts by a hash of its name, so that adding
 /// recordings moves none of the others.
@@ -21,4 +21,4 @@ struct Shard {
 /// @throws Error if it is not "i/n" with 1 ≤ i ≤ n
 Shard parse_shard(const std::string& text);
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -9,7 +9,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 template <class Number>
@@ -45,4 +45,4 @@ std::optional<unsigned> cores_of_slurm(EnvironmentVariable variable) {
   return cores && *cores > 0 ? cores : std::nullopt;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

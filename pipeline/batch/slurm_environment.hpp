@@ -5,7 +5,7 @@
 
 #include "pipeline/batch/shard.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The value of a variable of the environment, or nullptr.
 using EnvironmentVariable = const char* (*)(const char* name);
@@ -18,4 +18,4 @@ std::optional<Shard> shard_of_slurm(EnvironmentVariable variable);
 /// Number of cores that Slurm allocated to this task, by SLURM_CPUS_ON_NODE; nothing outside of a Slurm job.
 std::optional<unsigned> cores_of_slurm(EnvironmentVariable variable);
 
-}  // namespace crisp
+}  // namespace crisp::batch

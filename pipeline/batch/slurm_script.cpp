@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 constexpr std::string_view kDirective = "#SBATCH --";
@@ -81,4 +81,4 @@ std::optional<std::uint64_t> longest_slurm_array(std::string_view config) {
   return std::max<std::uint64_t>(size, 1) - 1;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::batch {
 
 /// The scripts share/crisp/slurm/batch.sbatch and merge.sbatch.
 extern const std::string_view kSlurmBatchScript;
@@ -34,4 +34,4 @@ std::string slurm_log_path(std::string_view path);
 /// The most tasks that an array may have whose first index is 1, by what `scontrol show config` prints.
 std::optional<std::uint64_t> longest_slurm_array(std::string_view config);
 
-}  // namespace crisp
+}  // namespace crisp::batch

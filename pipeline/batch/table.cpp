@@ -9,7 +9,7 @@
 
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -117,13 +117,13 @@ Json head_json(const BatchRows& rows) {
 }
 
 void print_json(const BatchRows& rows, const Json& head, const TextSink& sink) {
-  std::string begin = json_text(head, 1);
+  std::string begin = files::json_text(head, 1);
   begin.resize(begin.find_last_of('}'));  // which follows the rows
   while (begin.back() == '\n' || begin.back() == ' ') begin.pop_back();
   sink(begin + ",\n \"rows\": [");
   for (const auto& row : rows.rows)
-    sink((&row == &rows.rows.front() ? "\n  " : ",\n  ") + json_text(row_json(row)));
+    sink((&row == &rows.rows.front() ? "\n  " : ",\n  ") + files::json_text(row_json(row)));
   sink("\n ]\n}\n");
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

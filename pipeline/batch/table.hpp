@@ -12,7 +12,7 @@
 
 #include "pipeline/batch/manifest.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// A parameter as a recording's calibration found it, in SI.
 struct RowParameter {
@@ -67,4 +67,4 @@ nlohmann::ordered_json head_json(const BatchRows& rows);
 /// As JSON: this head, with the rows as its last key, a line a recording.
 void print_json(const BatchRows& rows, const nlohmann::ordered_json& head, const TextSink& sink);
 
-}  // namespace crisp
+}  // namespace crisp::batch

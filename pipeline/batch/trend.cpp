@@ -10,7 +10,7 @@
 
 #include "pipeline/statistics/multiple_testing.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
 constexpr std::size_t kMin = 3;  // recordings that make a trend
@@ -54,7 +54,8 @@ void judge(ParameterTrend& trend, std::size_t tests) {
     const double distance = difference(point.value, trend.centre, trend.unit);
     trend.chi2 += distance * distance * weight_of(point);
     const double z = distance / std::hypot(point.std_error, trend.centre_error);
-    point.p_value = sidak_p_value(static_cast<double>(tests), std::erfc(std::abs(z) / std::numbers::sqrt2));
+    point.p_value =
+        statistics::sidak_p_value(static_cast<double>(tests), std::erfc(std::abs(z) / std::numbers::sqrt2));
   }
   trend.chi2 /= static_cast<double>(trend.points.size() - 1);
 }
@@ -104,4 +105,4 @@ void mark_outstanding(const std::vector<ParameterTrend>& trends, std::vector<Bat
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

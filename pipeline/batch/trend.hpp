@@ -6,7 +6,7 @@
 
 #include "pipeline/batch/table.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 
 /// One recording's estimate of a parameter.
 struct TrendPoint {
@@ -44,4 +44,4 @@ std::string trend_svg(const std::vector<ParameterTrend>& trends);
 /// For programs: a parameter each, without its points.
 nlohmann::ordered_json trend_json(const std::vector<ParameterTrend>& trends);
 
-}  // namespace crisp
+}  // namespace crisp::batch

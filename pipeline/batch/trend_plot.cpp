@@ -5,30 +5,30 @@
 #include "pipeline/data/shown_unit.hpp"
 #include "pipeline/plot/plot.hpp"
 
-namespace crisp {
+namespace crisp::batch {
 namespace {
 
-Plot plot_of(const ParameterTrend& trend) {
+plot::Plot plot_of(const ParameterTrend& trend) {
   constexpr std::size_t kMax = 5000;  // points that are drawn of those that do not stand out
   const std::size_t every = 1 + trend.points.size() / kMax;
-  const auto [scale, unit] = shown_unit(trend.unit);
-  PlotSeries alike{.name = "recordings", .joined = false};
-  PlotSeries apart{.name = "stands out", .joined = false};
+  const auto [scale, unit] = data::shown_unit(trend.unit);
+  plot::PlotSeries alike{.name = "recordings", .joined = false};
+  plot::PlotSeries apart{.name = "stands out", .joined = false};
   for (std::size_t i = 0; i < trend.points.size(); ++i) {
     const TrendPoint& point = trend.points[i];
     const bool stands_out = point.p_value < kStandsOut;
     if (!stands_out && i % every != 0) continue;
-    PlotSeries& series = stands_out ? apart : alike;
+    plot::PlotSeries& series = stands_out ? apart : alike;
     series.x.push_back(static_cast<double>(i + 1));
     series.y.push_back(point.value * scale);
     series.error.push_back(point.std_error * scale);
   }
-  PlotSeries centre{.name = "median", .x = {1, static_cast<double>(trend.points.size())}};
+  plot::PlotSeries centre{.name = "median", .x = {1, static_cast<double>(trend.points.size())}};
   centre.y.assign(2, trend.centre * scale);
-  Plot plot{.title = trend.name,
-            .x_label = "recording, in the order of time",
-            .y_label = fmt::format("{} [{}]", trend.name, unit),
-            .series = {std::move(alike), std::move(centre)}};
+  plot::Plot plot{.title = trend.name,
+                  .x_label = "recording, in the order of time",
+                  .y_label = fmt::format("{} [{}]", trend.name, unit),
+                  .series = {std::move(alike), std::move(centre)}};
   if (!apart.x.empty()) plot.series.push_back(std::move(apart));
   return plot;
 }
@@ -36,9 +36,9 @@ Plot plot_of(const ParameterTrend& trend) {
 }  // namespace
 
 std::string trend_svg(const std::vector<ParameterTrend>& trends) {
-  std::vector<Plot> plots;
+  std::vector<plot::Plot> plots;
   for (const auto& trend : trends) plots.push_back(plot_of(trend));
-  return as_svg(plots);
+  return plot::as_svg(plots);
 }
 
 nlohmann::ordered_json trend_json(const std::vector<ParameterTrend>& trends) {
@@ -63,4 +63,4 @@ nlohmann::ordered_json trend_json(const std::vector<ParameterTrend>& trends) {
   return json;
 }
 
-}  // namespace crisp
+}  // namespace crisp::batch

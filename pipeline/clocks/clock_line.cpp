@@ -6,7 +6,7 @@
 
 #include "pipeline/clocks/lower_hull.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 /// Index of the stamp that a line of this slope touches first from below.
@@ -56,4 +56,4 @@ ClockLine line_by_convex_hull(std::span<const Stamp> stamps, double center) {
   return line_through(vertices[support(vertices, bound)], bound, center);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

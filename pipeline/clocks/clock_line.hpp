@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// A pair of times: a device's time stamp of sending, and its delay until receipt by the hub's clock. Both
 /// are relative to the first stamp of a run, which keeps all digits.
@@ -52,4 +52,4 @@ struct LineErrors {
 /// @param quantum [s] the resolution of the stamps
 LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, double quantum = 1e-6);
 
-}  // namespace crisp
+}  // namespace crisp::clocks

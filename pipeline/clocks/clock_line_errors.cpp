@@ -7,7 +7,7 @@
 #include "pipeline/clocks/line_bias.hpp"
 #include "pipeline/clocks/lower_hull.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 std::vector<double> block_minima(std::span<const Stamp> stamps, const ClockLine& line, std::size_t blocks) {
@@ -130,4 +130,4 @@ LineErrors errors_of_line(std::span<const Stamp> stamps, const ClockLine& line, 
           .slope = slope_spread(hull.vertices(), line, scale)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

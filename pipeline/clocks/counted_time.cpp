@@ -6,7 +6,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 constexpr std::size_t kKept = 16;     // intervals that predict the next one
@@ -54,7 +54,7 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   const auto n = static_cast<double>(steps);
   if (std::abs(seconds - n * usual_) < n * kMinJump / 2) return std::nullopt;  // as nearly all
   std::vector<double> values = latest_;
-  const double usual = median_in_place(values);
+  const double usual = statistics::median_in_place(values);
   const double excess = seconds - n * usual;
   if (std::abs(excess) < n * std::max(kMinJump, kManyTimes * usual_deviation(usual))) return std::nullopt;
   // Where receipts confirm the device's clock, the interval was real: nothing was sent for a while, and not
@@ -73,7 +73,7 @@ double CountedTime::usual_deviation(double usual) const {
   std::vector<double> latest = latest_;
   for (double& value : latest) value = std::abs(value - usual);
   std::vector<double> many = spread_;
-  return std::max(median_in_place(latest), many.empty() ? 0 : median_in_place(many));
+  return std::max(statistics::median_in_place(latest), many.empty() ? 0 : statistics::median_in_place(many));
 }
 
 void CountedTime::remember(double step) {
@@ -91,8 +91,8 @@ void CountedTime::remember(double step) {
   }
   if (latest_.size() == kEnough || next_ % kEnough == 0) {
     std::vector<double> values = latest_;
-    usual_ = median_in_place(values);
+    usual_ = statistics::median_in_place(values);
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

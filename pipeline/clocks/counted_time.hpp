@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// Detects jumps of a device's clock by the device's counter. The counted events come at even intervals
 /// (turns of a mirror, readings of an encoder), so that a jump of the clock too small to be seen in the
@@ -51,4 +51,4 @@ class CountedTime {
   std::optional<double> confirmed_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -9,7 +9,7 @@
 #include "pipeline/clocks/lower_hull.hpp"
 #include "pipeline/clocks/series.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 constexpr std::size_t kMinStampsOfAStep = 96;  // stamps: eight stretches of the envelope
@@ -88,4 +88,4 @@ std::optional<DelayStep> step_of_delay(std::span<const Stamp> stamps) {
   return step;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

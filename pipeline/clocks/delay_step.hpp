@@ -7,7 +7,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// A step of a link's minimum delay.
 struct DelayStep {
@@ -27,4 +27,4 @@ struct DelayStep {
 /// @param stamps ascending in device time
 std::optional<DelayStep> step_of_delay(std::span<const Stamp> stamps);
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -6,7 +6,7 @@
 
 #include "pipeline/clocks/series.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 Eigen::MatrixXd Envelope::straight() const {
   Eigen::MatrixXd base(time.size(), 2);
@@ -52,4 +52,4 @@ Eigen::MatrixXd bend_and_steps(const Eigen::VectorXd& time, Eigen::Index margin)
   return columns;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

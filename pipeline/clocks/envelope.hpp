@@ -9,7 +9,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// The lower envelope of receipt less device time, which queues in the network do not move: the stamp of
 /// least delay in each of some stretches of a recording.
@@ -63,4 +63,4 @@ double early_share(std::span<const Stamp> stamps, double step, const Level& leve
          static_cast<double>(std::max<std::size_t>(1, stamps.size()));
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 constexpr double kSmallestDeviation = 50e-6;  // [s] of a deviation that is worth taking out
@@ -73,7 +73,7 @@ double usual_change(const Series& series) {
   for (std::size_t i = 1; i < series.size(); ++i) {
     if (std::isfinite(series[i] - series[i - 1])) changes.push_back(series[i] - series[i - 1]);
   }
-  return changes.empty() ? 0 : median_in_place(changes);
+  return changes.empty() ? 0 : statistics::median_in_place(changes);
 }
 
 /// How uneven a series is from one value to the next [s]: its noise, where it changes slowly.
@@ -83,7 +83,8 @@ double noise_of(const Series& series) {
     const double bend = series[i] - 2 * series[i - 1] + series[i - 2];
     if (std::isfinite(bend)) bends.push_back(std::abs(bend) / std::sqrt(6.0));
   }
-  return bends.empty() ? HUGE_VAL : std::max(1e-6, kMadToSigma * median_in_place(bends));
+  return bends.empty() ? HUGE_VAL
+                       : std::max(1e-6, statistics::kMadToSigma * statistics::median_in_place(bends));
 }
 
 Series medians(const std::vector<Series>& all, std::size_t without) {
@@ -93,7 +94,7 @@ Series medians(const std::vector<Series>& all, std::size_t without) {
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (k != without && std::isfinite(all[k][i])) values.push_back(all[k][i]);
     }
-    if (!values.empty()) result[i] = median_in_place(values);
+    if (!values.empty()) result[i] = statistics::median_in_place(values);
   }
   return result;
 }
@@ -167,7 +168,7 @@ class DeviationSeries {
     const std::vector<double> times = times_without(known);
     std::vector<double> skews;
     for (const auto* stamps : devices_) skews.push_back(line_of(least_leads(*stamps, known, 0), times).slope);
-    return median_in_place(skews);
+    return statistics::median_in_place(skews);
   }
 
   /// Adds what is left of it.
@@ -198,7 +199,7 @@ class DeviationSeries {
     for (std::size_t i = kAround; i + kAround + 1 < known.size(); ++i) {
       std::vector<double> rates;
       for (std::size_t j = i - kAround; j <= i + kAround; ++j) rates.push_back(change(j) / stretches(j));
-      const double by = change(i) - median_in_place(rates) * stretches(i);
+      const double by = change(i) - statistics::median_in_place(rates) * stretches(i);
       if (std::abs(by) < least) continue;
       steps.push_back(
           {.at = begin_ + 0.5 * static_cast<double>(known[i] + known[i + 1] + 1) * width_, .by = by});
@@ -311,4 +312,4 @@ std::optional<HubDeviation> find_hub_deviation(std::span<const std::vector<Recei
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// The hub's time of receipt of a telegram, and its delay against the device's time stamp of sending.
 struct ReceivedStamp {
@@ -47,4 +47,4 @@ class HubDeviation {
 /// @param devices the stamps of each, ascending in `hub` but for what its steps did
 std::optional<HubDeviation> find_hub_deviation(std::span<const std::vector<ReceivedStamp>> devices);
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -6,7 +6,7 @@
 
 #include "pipeline/data/recordings.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 constexpr double kTolerance = 0.1;            // [s] of delays, and among devices
@@ -44,7 +44,7 @@ std::optional<std::int64_t> ForwardStep::size_ns() const {
     if (before == before_.end() || hub < kShortest) continue;
     const double ran_on = device_between(before->second, seen.first);
     const bool is_even = std::abs(device_between(seen.first, seen.last) - hub) < kTolerance;
-    if (!is_even || is_pause(ran_on)) return std::nullopt;
+    if (!is_even || data::is_pause(ran_on)) return std::nullopt;
     steps.push_back(hub_between(before->second, seen.first) - ran_on);
   }
   if (steps.size() < 2) return std::nullopt;
@@ -55,4 +55,4 @@ std::optional<std::int64_t> ForwardStep::size_ns() const {
   return std::llround(1e9 * step);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

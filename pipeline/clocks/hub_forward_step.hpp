@@ -9,7 +9,7 @@
 
 #include "pipeline/clocks/unwrap.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// Distinguishes a forward step of the hub's clock from a pause in which nothing was recorded. After a step,
 /// all devices' clocks have run on by less than the hub's, and by the same amount less.
@@ -35,4 +35,4 @@ class ForwardStep {
   std::map<std::size_t, After> after_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clocks

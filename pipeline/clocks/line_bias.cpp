@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 /// About n · (x / lowest)^shape of the stamps have delays below x.
@@ -63,4 +63,4 @@ LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line
           .std_error = std::max({quantum, std::hypot(scatter, of_shape), mean - most})};
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -5,7 +5,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// Bias of a line below stamps against their clock, as no stamp has the least delay.
 struct LineBias {
@@ -21,4 +21,4 @@ struct LineBias {
 /// @param quantum [s] the resolution of the stamps
 LineBias estimate_line_bias(std::span<const Stamp> stamps, const ClockLine& line, double quantum);
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::clocks {
 
 bool LowerHull::is_above(const Stamp& left, const Stamp& middle, const Stamp& right) const {
   const double rise = (height(middle) - height(left)) * (right.device - left.device);
@@ -43,4 +43,4 @@ ClockLine HullClock::line() const {
   return std::abs(line.slope) < kMaxSkew ? line : line_by_convex_hull(vertices, mean_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

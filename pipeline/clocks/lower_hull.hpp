@@ -6,7 +6,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// The lower convex hull of stamps that come in order of device time: amortised O(1) a stamp.
 ///
@@ -46,4 +46,4 @@ class HullClock {
   double mean_ = 0;  ///< [s] of the device times
 };
 
-}  // namespace crisp
+}  // namespace crisp::clocks

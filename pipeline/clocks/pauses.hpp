@@ -7,7 +7,7 @@
 
 #include "pipeline/data/recordings.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// The pauses in what a hub receives, longer than kPause, in which nothing came from any device: what divides
 /// its recordings.
@@ -27,7 +27,7 @@ class Pauses {
   }
 
   /// Whether a pause would end with an item that is received then.
-  bool end_before(std::int64_t time_ns) const { return is_pause(silence_before(time_ns)); }
+  bool end_before(std::int64_t time_ns) const { return data::is_pause(silence_before(time_ns)); }
 
   /// Whether the last pause lies between two items of a device.
   bool last_is_between(std::int64_t before_ns, std::int64_t after_ns) const {
@@ -49,4 +49,4 @@ class Pauses {
   double seconds_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 
 Eigen::MatrixXd off_base(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd orthonormal =
@@ -23,10 +23,10 @@ SeriesFit best_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& col
   fit.product = products.cwiseAbs().maxCoeff(&fit.column);
   Eigen::MatrixXd both(base.rows(), base.cols() + 1);
   both << base, columns.col(fit.column);
-  fit.values = least_squares(both, values);
+  fit.values = statistics::least_squares(both, values);
   const double squares = (values - both * fit.values).squaredNorm();
   const double variance = squares / static_cast<double>(std::max<Eigen::Index>(1, both.rows() - both.cols()));
-  fit.errors = (variance * inverse(both.transpose() * both).diagonal()).cwiseSqrt();
+  fit.errors = (variance * statistics::inverse(both.transpose() * both).diagonal()).cwiseSqrt();
   fit.rms = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
   return fit;
 }
@@ -39,4 +39,4 @@ Eigen::MatrixXd steps(Eigen::Index n, Eigen::Index margin) {
 
 Eigen::Index before_step(const Eigen::VectorXd& column) { return (column.array() == 0).count(); }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

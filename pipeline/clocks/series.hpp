@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// The best-fitting column for a short series of values, next to a base of expected regressors.
 struct SeriesFit {
@@ -31,4 +31,4 @@ Eigen::MatrixXd steps(Eigen::Index n, Eigen::Index margin);
 /// Number of values before the step that a column of steps() describes.
 Eigen::Index before_step(const Eigen::VectorXd& column);
 
-}  // namespace crisp
+}  // namespace crisp::clocks

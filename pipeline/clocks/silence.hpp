@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::clocks {
 
 inline constexpr double kClockSet = 0.5;  ///< [s] by which a hub's clock is set: far above a network's delays
 
@@ -24,4 +24,4 @@ inline double silence_between(double hub_s, double device_s) {
   return device_s > 0 && hub_s - device_s > kClockSet ? device_s : hub_s;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -8,7 +8,7 @@
 
 #include "pipeline/clocks/clock_line.hpp"
 
-namespace crisp {
+namespace crisp::clocks {
 namespace {
 
 constexpr std::int64_t kTimeModulus = std::int64_t{1} << 32;
@@ -88,4 +88,4 @@ void TimeUnwrapper::refuse_seconds_clock(std::uint32_t raw_us) {
               "update the firmware of " + device_ + ": the second of a stamp is ambiguous");
 }
 
-}  // namespace crisp
+}  // namespace crisp::clocks

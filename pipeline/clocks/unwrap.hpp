@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace crisp {
+namespace crisp::clocks {
 
 /// [ns since the Unix epoch] The epoch of a run whose first item was received then: the nearest whole second,
 /// so that times in a run are small numbers.
@@ -92,4 +92,4 @@ class TimeUnwrapper {
   int falls_ = 0;  ///< how often the counter fell back
 };
 
-}  // namespace crisp
+}  // namespace crisp::clocks

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::data {
 
 /// When what was pushed to a Batcher is worked on.
 struct BatchSettings {
@@ -106,4 +106,4 @@ class Batcher {
   std::jthread thread_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -11,7 +11,7 @@ namespace {
 
 void require_ascending(const ClockPiece& before, const ClockPiece& next) {
   if (!(next.device_begin > before.device_begin)) {
-    throw internal_error("the pieces of a clock map do not ascend in device time");
+    throw data::internal_error("the pieces of a clock map do not ascend in device time");
   }
 }
 

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-namespace crisp {
+namespace crisp::data {
 
 inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -5,7 +5,7 @@
 
 #include <crisp/calibration.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// Calls `act` with each parameter's full name ("laser1.tau", "plate.encoder.eccentricity.a") and itself, in
 /// the order of the file.
@@ -23,4 +23,4 @@ void for_each_parameter(Calibrated& calibration, const Act& act) {
   with_terms(calibration.plate_terms, "plate");
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::data {
 namespace {
 
 struct BeamEcho {
@@ -65,4 +65,4 @@ std::shared_ptr<const Scan> with_used_echoes(std::shared_ptr<const Scan> scan, E
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -6,7 +6,7 @@
 
 #include <crisp/scan.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// Counts of a choice of echoes.
 struct EchoCounts {
@@ -20,4 +20,4 @@ struct EchoCounts {
 std::shared_ptr<const Scan> with_used_echoes(std::shared_ptr<const Scan> scan, EchoChoice choice,
                                              EchoCounts& counts);
 
-}  // namespace crisp
+}  // namespace crisp::data

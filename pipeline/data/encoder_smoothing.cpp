@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-namespace crisp {
+namespace crisp::data {
 namespace {
 
 constexpr int kTerms = 5;             // of a polynomial of the fourth degree
@@ -169,4 +169,4 @@ std::vector<double> between_steps(std::span<const double> times, std::span<const
   return smooth;
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -6,7 +6,7 @@
 
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// Estimates a plate's angle between the steps of its encoder. A whole count is up to half a step from the
 /// angle, and all beams between two readings share that error: 0.2 mrad at 16384 counts a turn, 10 mm at 50
@@ -27,4 +27,4 @@ namespace crisp {
 std::vector<double> between_steps(std::span<const double> times, std::span<const double> angles, double step,
                                   double half_width);
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -7,7 +7,7 @@
 
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::data {
 
 std::optional<Error> resource_exhaustion(const std::exception& thrown) {
   if (dynamic_cast<const std::bad_alloc*>(&thrown) != nullptr)
@@ -30,4 +30,4 @@ Error error_of(const std::exception& thrown) {
   return internal_error(thrown.what());
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -6,7 +6,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// Error for an exception of the standard library about exhausted memory or threads; nothing for
 /// any other exception.
@@ -16,4 +16,4 @@ std::optional<Error> resource_exhaustion(const std::exception& thrown);
 /// the program.
 Error error_of(const std::exception& thrown);
 
-}  // namespace crisp
+}  // namespace crisp::data

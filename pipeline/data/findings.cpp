@@ -11,7 +11,7 @@ namespace {
 /// Šidák-corrected p-value of the smaller of two independent p-values; a missing one does not count.
 double combined_p_value(double one, double other) {
   const double least = std::fmin(one, other);
-  return std::isnan(one) || std::isnan(other) ? least : sidak_p_value(2, least);
+  return std::isnan(one) || std::isnan(other) ? least : statistics::sidak_p_value(2, least);
 }
 
 }  // namespace

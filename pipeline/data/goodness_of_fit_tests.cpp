@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/multiple_testing.hpp"
 
-namespace crisp {
+namespace crisp::data {
 namespace {
 
 constexpr double kDeparts = 0.01;  // a p-value
@@ -33,7 +33,7 @@ FitStatistics corrected(std::vector<FitTest> tests) {
   FitStatistics all{.tests = std::move(tests)};
   const auto count = static_cast<double>(all.tests.size());
   for (FitTest& test : all.tests) {
-    test.p_value = sidak_p_value(count, test.p_value);
+    test.p_value = statistics::sidak_p_value(count, test.p_value);
     all.p_value = std::min(all.p_value, test.p_value);
   }
   return all;
@@ -42,7 +42,7 @@ FitStatistics corrected(std::vector<FitTest> tests) {
 void add_fit_statistics(const std::vector<GoodnessOfFit>& scopes, Findings& to) {
   if (scopes.empty()) return;
   const auto of_all = [&](double p_value) {
-    return sidak_p_value(static_cast<double>(scopes.size()), p_value);
+    return statistics::sidak_p_value(static_cast<double>(scopes.size()), p_value);
   };
   double before_p = 1;
   double after_p = 1;
@@ -69,7 +69,7 @@ void add_fit_statistics(const std::vector<GoodnessOfFit>& scopes, Findings& to) 
 void add_left_over(const std::string& scope, const FitStatistics& left, std::size_t tests, Findings& to) {
   constexpr double kByChance = 0.002;
   for (const FitTest& test : left.tests) {
-    const double p_value = sidak_p_value(static_cast<double>(tests), test.p_value);
+    const double p_value = statistics::sidak_p_value(static_cast<double>(tests), test.p_value);
     const bool is_known = std::ranges::any_of(to.unnamed, [&](const UnnamedFinding& known) {
       return known.scope == scope && known.covariate == test.covariate && known.quantity == test.quantity;
     });
@@ -101,4 +101,4 @@ std::string fit_statistics_text(const Findings& findings) {
   return words;
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

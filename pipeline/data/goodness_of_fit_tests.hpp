@@ -6,7 +6,7 @@
 
 #include <crisp/findings.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// A test of one quantity of the measured residuals against the simulated ones, over one covariate.
 struct FitTest {
@@ -53,4 +53,4 @@ std::string chance_in_words(double p_value);
 /// Goodness of fit of the simulation, without and with the findings, in words.
 std::string fit_statistics_text(const Findings& findings);
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -5,9 +5,9 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// A fault of the program, which no input and no setting explains. Its one advice is to report it.
 Error internal_error(const std::string& what);
 
-}  // namespace crisp
+}  // namespace crisp::data

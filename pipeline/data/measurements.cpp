@@ -16,7 +16,8 @@ void Measurements::reserve(std::size_t n) {
 
 void Measurements::append(const Measurements& other) {
   if (range.empty()) epoch_ns = other.epoch_ns;
-  if (epoch_ns != other.epoch_ns) throw internal_error("measurements of different epochs cannot be joined");
+  if (epoch_ns != other.epoch_ns)
+    throw data::internal_error("measurements of different epochs cannot be joined");
   const bool incidences = (size() == 0 || !cos_incidence.empty()) && !other.cos_incidence.empty();
   const auto join = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   join(range, other.range);

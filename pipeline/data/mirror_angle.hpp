@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace crisp {
+namespace crisp::data {
 
 /// [rad] A mirror angle within half a turn of 0, so that its sign gives the half of the sweep, whatever the
 /// mount. An angle of half a turn but for rounding stays.
@@ -16,4 +16,4 @@ inline double wrapped_mirror_angle(double angle) {
   return std::remainder(angle, kTurn);
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

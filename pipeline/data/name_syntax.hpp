@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::data {
 
 /// Whether a name is what YAML, paths and `--set` take as it stands: of a-z, 0-9 and _.
 inline bool is_plain_name(std::string_view name) {
@@ -27,4 +27,4 @@ inline bool is_name_in_family(std::string_view name) {
          is_plain_name(name.substr(dot + 1));
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-namespace crisp {
+namespace crisp::data {
 
 PlateTrajectory reversed(const PlateTrajectory& plate) {
   std::vector<double> angles(plate.size());
@@ -26,4 +26,4 @@ std::shared_ptr<const PlateTrajectory> OrientedPlate::operator()(std::shared_ptr
   return reversed_;
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -6,7 +6,7 @@
 #include <crisp/plate_trajectory.hpp>
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// The same readings of an encoder that counts the other way: φ → −φ.
 PlateTrajectory reversed(const PlateTrajectory& plate);
@@ -25,4 +25,4 @@ class OrientedPlate {
   std::shared_ptr<const PlateTrajectory> reversed_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::data {
 
 /// A pool of reusable objects. An object that nobody holds any more returns to the pool, from whatever
 /// thread, and is filled anew, so that a stream allocates its memory once and not for every scan. The pool
@@ -49,4 +49,4 @@ class Pool {
   std::shared_ptr<Free> free_ = std::make_shared<Free>();
 };
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::data {
 
 std::vector<Recording> recordings_of(const PlateTrajectory& plate) {
   std::vector<Recording> all;
@@ -32,4 +32,4 @@ std::size_t RecordingNumbers::of(double time) const {
   return static_cast<std::size_t>(std::ranges::upper_bound(borders_, time) - borders_.begin());
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

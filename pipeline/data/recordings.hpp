@@ -7,7 +7,7 @@
 
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::data {
 
 /// [s] A silence after which what comes is another recording: the scanner may have been carried elsewhere,
 /// and its clocks have nothing in common with those before. One recording too many costs little.
@@ -47,4 +47,4 @@ class RecordingNumbers {
   std::optional<double> end_;    // [s since epoch] of the encoder readings
 };
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -28,10 +28,10 @@ Rig default_rig() {
     RigLaser laser;
     laser.name = "laser" + std::to_string(i + 1);
     laser.address = {.ip = "192.168.0." + std::to_string(i + 1), .port = 0};
-    laser.mount = 45 * kDegree;
+    laser.mount = 45 * data::kDegree;
     laser.nominal.name = laser.name;
     laser.nominal.tau.value = 0.20;
-    laser.nominal.lambda.value = i * 120 * kDegree;
+    laser.nominal.lambda.value = i * 120 * data::kDegree;
     rig.lasers.push_back(laser);
   }
   rig.plate.address = {.ip = "192.168.0.10", .port = 4000};

@@ -8,7 +8,7 @@
 
 #include "pipeline/data/echoes.hpp"
 
-namespace crisp {
+namespace crisp::data {
 
 /// The scan with the echoes that the rig chooses for its laser.
 inline std::shared_ptr<const Scan> with_used_echoes(std::shared_ptr<const Scan> scan, const Rig& rig) {
@@ -18,4 +18,4 @@ inline std::shared_ptr<const Scan> with_used_echoes(std::shared_ptr<const Scan> 
   return with_used_echoes(std::move(scan), choice, counts);
 }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -6,7 +6,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::data {
 
 /// Unit in which people read a number.
 struct ShownUnit {
@@ -26,4 +26,4 @@ inline ShownUnit shown_unit(const std::string& unit) {
 /// @param error  > 0
 inline int decimals_that_show(double error) { return 1 - static_cast<int>(std::floor(std::log10(error))); }
 
-}  // namespace crisp
+}  // namespace crisp::data

@@ -7,7 +7,7 @@
 
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// The parameters of equation (2), in the order in which a laser's chain has them.
 enum BaseSlot : std::size_t { kLambda, kTau, kAlpha, kEta };
@@ -21,4 +21,4 @@ inline bool is_free(const std::vector<std::size_t>& free, std::size_t parameter)
   return std::ranges::find(free, parameter) != free.end();
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -17,7 +17,7 @@
 #include "pipeline/quality/surfel_equations.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 Eigen::Vector3d point(const PointsView& points, std::uint32_t i) {
@@ -25,18 +25,18 @@ Eigen::Vector3d point(const PointsView& points, std::uint32_t i) {
 }
 
 /// Each true plane as a surfel of all the beams that meet it.
-Surfels surfels_of_truth(const BeamsView& beams, std::span<const std::uint32_t> surface,
-                         std::span<const Eigen::Vector3d> normals) {
+quality::Surfels surfels_of_truth(const quality::BeamsView& beams, std::span<const std::uint32_t> surface,
+                                  std::span<const Eigen::Vector3d> normals) {
   std::vector<std::vector<std::uint32_t>> members(normals.size());
   for (std::uint32_t i = 0; i < surface.size(); ++i) {
     if (surface[i] >= normals.size())
-      throw internal_error(fmt::format("a beam meets surface {} of {}", surface[i], normals.size()));
+      throw data::internal_error(fmt::format("a beam meets surface {} of {}", surface[i], normals.size()));
     members[surface[i]].push_back(i);
   }
-  Surfels result;
+  quality::Surfels result;
   for (std::size_t s = 0; s < normals.size(); ++s) {
     if (members[s].empty()) continue;
-    Surfel surfel{.middle = Eigen::Vector3d::Zero(), .normal = normals[s]};
+    quality::Surfel surfel{.middle = Eigen::Vector3d::Zero(), .normal = normals[s]};
     for (const auto i : members[s]) surfel.middle += point(beams.points, i);
     surfel.middle /= static_cast<double>(members[s].size());
     double squares = 0;
@@ -57,18 +57,18 @@ Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& 
                                         std::span<const Eigen::Vector3d> normals,
                                         const std::vector<std::size_t>& free, const BoundNoise& noise) {
   if (surface.size() != beams.beams.size())
-    throw internal_error(fmt::format("{} beams have {} surfaces", beams.beams.size(), surface.size()));
+    throw data::internal_error(fmt::format("{} beams have {} surfaces", beams.beams.size(), surface.size()));
   if (!(noise.range > 0))
     throw Error("the ranges have no noise, so that there is no bound", "give a sigma above 0 m");
   const PlacedBeams placed(truth, beams);
-  const Surfels surfels = surfels_of_truth(placed.view(), surface, normals);
-  const DerivativeRows rows = surfel_rows(truth, beams, free);
-  const SurfelSettings exact{.noise = noise.range, .floor = 1e-6 * noise.range};
+  const quality::Surfels surfels = surfels_of_truth(placed.view(), surface, normals);
+  const quality::DerivativeRows rows = surfel_rows(truth, beams, free);
+  const quality::SurfelSettings exact{.noise = noise.range, .floor = 1e-6 * noise.range};
   if (noise.encoder_step <= 0) {
-    return normal_equations(surfels, placed.view(), free.size(), rows, exact).matrix;
+    return quality::normal_equations(surfels, placed.view(), free.size(), rows, exact).matrix;
   }
   const EncoderErrorBlocks moments = encoder_error_blocks(truth, beams, noise.encoder_step);
-  return information_with_turns(surfels, placed.view(), free.size(), rows, exact, moments.turns());
+  return quality::information_with_turns(surfels, placed.view(), free.size(), rows, exact, moments.turns());
 }
 
 Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
@@ -76,7 +76,8 @@ Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
   // To unit diagonal first: parameters come in metres, radians and seconds.
   const Eigen::VectorXd scale =
       information.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-  const SymmetricEigen eigen = eigendecomposition(scale.asDiagonal() * information * scale.asDiagonal());
+  const statistics::SymmetricEigen eigen =
+      statistics::eigendecomposition(scale.asDiagonal() * information * scale.asDiagonal());
   constexpr double kNothing = 1e-10;  // of what a parameter alone would be known by
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(scale.size());
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
@@ -93,4 +94,4 @@ Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information) {
   return scale.cwiseProduct(variance.cwiseSqrt());
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -8,7 +8,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 struct BoundNoise {
   double range = 0.012;     ///< [m] standard deviation of a range
@@ -42,4 +42,4 @@ Eigen::MatrixXd calibration_information(const SensorModel& truth, const Sample& 
 /// infinite for unidentifiable parameters.
 Eigen::VectorXd least_std_errors(const Eigen::MatrixXd& information);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 using Indices = std::vector<Eigen::Index>;
@@ -88,4 +88,4 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& matrix, const Eigen::VectorX
   return step.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Bounds of a step, for each parameter: infinite where there is none.
 struct StepBounds {
@@ -19,4 +19,4 @@ struct StepBounds {
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,
                              const StepBounds& bounds);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 const ClockMap* clock_of(const std::string& device, const std::map<std::string, ClockMap>& clocks) {
@@ -63,4 +63,4 @@ double plate_angle_error(const PlateTrajectory& plate, const Rig& rig,
   return std::hypot(step, rms_rate(plate) * time);
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

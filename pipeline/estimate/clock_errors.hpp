@@ -10,7 +10,7 @@
 
 #include "pipeline/estimate/outcome.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Adds to the covariance of each η what the clocks' own errors make of it: η_i is off by what the laser's
 /// clock is early and the plate's is late, and the plate's error is common to all.
@@ -23,4 +23,4 @@ void add_clock_errors(Outcome& outcome, const Rig& rig, const std::map<std::stri
 double plate_angle_error(const PlateTrajectory& plate, const Rig& rig,
                          const std::map<std::string, ClockMap>& clocks);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 ConsiderCovariance consider(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& information,
                             const std::vector<std::string>& names, const Eigen::VectorXd& prior) {
@@ -15,8 +15,8 @@ ConsiderCovariance consider(const Eigen::MatrixXd& covariance, const Eigen::Matr
   constexpr double kTakesPart = 0.05;  // of the largest size
   const Eigen::Index m = covariance.rows();
   const Eigen::Index h = prior.size();
-  Eigen::MatrixXd slopes = -solve_positive_definite(Eigen::MatrixXd(information.topLeftCorner(m, m)),
-                                                    Eigen::MatrixXd(information.topRightCorner(m, h)));
+  Eigen::MatrixXd slopes = -statistics::solve_positive_definite(
+      Eigen::MatrixXd(information.topLeftCorner(m, m)), Eigen::MatrixXd(information.topRightCorner(m, h)));
   // Slopes far below the largest, in standard errors, come from the encoder's steps, which make rates noisy.
   const Eigen::ArrayXXd sizes =
       (information.diagonal().head(m).cwiseSqrt().asDiagonal() * slopes).array().abs();
@@ -40,4 +40,4 @@ ConsiderCovariance consider(const Eigen::MatrixXd& covariance, const Eigen::Matr
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -7,7 +7,7 @@
 
 #include <crisp/calibration.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Consider covariance (Schmidt 1966): the effect of parameters held at their prior on the estimates of the
 /// others. An estimate moves by S per unit of a held parameter.
@@ -25,4 +25,4 @@ struct ConsiderCovariance {
 ConsiderCovariance consider(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& information,
                             const std::vector<std::string>& names, const Eigen::VectorXd& prior);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -11,7 +11,7 @@
 #include "pipeline/estimate/displacement.hpp"
 #include "pipeline/estimate/free_parameters.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr std::size_t kInBothHalves = 500'000;
@@ -53,4 +53,4 @@ std::optional<CrossValidation> cross_validate(const SensorModel& model, const Sa
                          .expected = std::sqrt(expected)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

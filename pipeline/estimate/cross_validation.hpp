@@ -5,7 +5,7 @@
 
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Distance of the clouds of two calibrations that are fitted to either half of a recording.
 struct CrossValidation {
@@ -22,4 +22,4 @@ struct CrossValidation {
 std::optional<CrossValidation> cross_validate(const SensorModel& model, const Sample& sample,
                                               const RefinementSettings& settings, const RoundReporter& go_on);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

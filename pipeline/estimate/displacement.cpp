@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// A shift and a small turn of everything move a point x by MΘ, M = [I, −[x]×]: the sum of all MᵀM.
@@ -63,4 +63,4 @@ Eigen::MatrixXd displacement(const SensorModel& model, const Sample& sample,
   return own / static_cast<double>(std::max<std::size_t>(1, placed.index.size()));
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,7 +6,7 @@
 
 #include "pipeline/estimate/base_parameters.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// [s] of each beam by the plate's clock.
@@ -58,4 +58,4 @@ EncoderErrorBlocks encoder_error_blocks(const SensorModel& model, const Sample& 
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

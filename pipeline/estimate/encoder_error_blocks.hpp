@@ -8,7 +8,7 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/encoder_nuisance.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// The plate's motion cut into moments of a twentieth of a second, in each of which what is left of the
 /// encoder's steps turns all beams by about one angle.
@@ -16,7 +16,7 @@ struct EncoderErrorBlocks {
   std::vector<std::uint32_t> of_beam;  ///< for each beam its moment, from 0
   std::vector<double> variances;       ///< [rad²] of each moment's turn
 
-  SharedTurns turns() const { return {.moments = of_beam, .variances = variances}; }
+  quality::SharedTurns turns() const { return {.moments = of_beam, .variances = variances}; }
 };
 
 /// @param model   gives the time of each beam by the plate's clock
@@ -35,4 +35,4 @@ EncoderErrorBlocks encoder_error_blocks(const SensorModel& model, const Sample& 
 /// @param angles  [rad] the plate's angle at each reading, to a fraction of a step; at least one
 double variance_of_mean_reading(std::span<const double> angles, double step);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

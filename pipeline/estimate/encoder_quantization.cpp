@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kMemory = 0.2;  // [s] beyond which readings of the encoder share no error: kEncoderSmoothing
@@ -17,14 +17,14 @@ double beams_a_second(const Sample& sample) {
 
 }  // namespace
 
-std::vector<float> noise_with_quantization(const Surfels& surfels, const BeamsView& beams,
+std::vector<float> noise_with_quantization(const quality::Surfels& surfels, const quality::BeamsView& beams,
                                            const Sample& sample, double step, double noise) {
   std::vector<float> with_steps(beams.points.size());
   for (std::size_t i = 0; i < with_steps.size(); ++i) with_steps[i] = static_cast<float>(beams.noise_of(i));
   if (sample.beams.size() == 0) return with_steps;
   const double a_second = beams_a_second(sample);
   const double error = step / std::sqrt(12);
-  for (const Surfel& surfel : surfels.surfels) {
+  for (const quality::Surfel& surfel : surfels.surfels) {
     for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
       const std::uint32_t i = surfels.members[k];
       const auto plate = sample.plate->at(sample.beams.time[i]);
@@ -38,4 +38,4 @@ std::vector<float> noise_with_quantization(const Surfels& surfels, const BeamsVi
   return with_steps;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,7 +6,7 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// The noise of each beam, inflated by the design effect of the encoder's quantization, an error that beams
 /// share: its own noise, in units of `noise`, times
@@ -20,7 +20,7 @@ namespace crisp {
 /// @param step   [rad] of the encoder
 /// @param noise  [m] standard deviation of a range
 /// @return       of each beam; of those on no surface their own
-std::vector<float> noise_with_quantization(const Surfels& surfels, const BeamsView& beams,
+std::vector<float> noise_with_quantization(const quality::Surfels& surfels, const quality::BeamsView& beams,
                                            const Sample& sample, double step, double noise);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -7,17 +7,19 @@
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/quality/wall_segments.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
+
+using quality::SurfelSettings;
 
 class Patches final : public FlatSurfaces {
  public:
   Patches(const SurfelSettings& settings, int searches, bool swept)
       : settings_(settings), searches_(searches), swept_(swept) {}
 
-  const Surfels& update(const BeamsView& beams, double last_step) override {
+  const quality::Surfels& update(const quality::BeamsView& beams, double last_step) override {
     if (!is_searching_) {
-      if (swept_) refit_all(surfels_, beams, settings_);
+      if (swept_) quality::refit_all(surfels_, beams, settings_);
       return surfels_;
     }
     is_searching_ = last_step > kSmallStep && round_++ < searches_;
@@ -32,16 +34,16 @@ class Patches final : public FlatSurfaces {
   bool is_settled() const override { return !is_searching_; }
 
  private:
-  void find(const BeamsView& beams, const SurfelSettings& settings) {
+  void find(const quality::BeamsView& beams, const SurfelSettings& settings) {
     // Cells along edges belong to no surface of their own, but their beams carry much information.
-    surfels_ = associate_with_surfaces(find_surfels(beams, settings), beams, settings,
+    surfels_ = associate_with_surfaces(quality::find_surfels(beams, settings), beams, settings,
                                        {.margin = settings.smallest});
-    refine_all(surfels_, beams, settings);
+    quality::refine_all(surfels_, beams, settings);
   }
 
   /// Settles which pieces are of one surface, how far surfaces go and which of them count. Not earlier: as
   /// long as parameters are off, walls are bent, and views disagree, most on what is far away.
-  void complete(const BeamsView& beams) {
+  void complete(const quality::BeamsView& beams) {
     constexpr double kBump = 0.5;
     constexpr double kSpacings = 4;
     constexpr double kMore = 1.3;
@@ -50,17 +52,18 @@ class Patches final : public FlatSurfaces {
     if (swept_ || surfels_.surfels.empty()) find(beams, strict);
     surfels_ =
         grow_surfaces(surfels_, beams, settings_, {.margin = settings_.smallest, .spacings = kSpacings});
-    refine_all(surfels_, beams, settings_);
-    for_each_index(surfels_.surfels.size(),
-                   [&](std::size_t s) { cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_); });
-    reject_inconsistent(surfels_, beams, settings_, kMore);
-    if (swept_) reject_grazed(surfels_, beams);
+    quality::refine_all(surfels_, beams, settings_);
+    quality::for_each_index(surfels_.surfels.size(), [&](std::size_t s) {
+      quality::cut_strange_ends(surfels_.surfels[s], surfels_, beams, settings_);
+    });
+    quality::reject_inconsistent(surfels_, beams, settings_, kMore);
+    if (swept_) quality::reject_grazed(surfels_, beams);
   }
 
   SurfelSettings settings_;
   int searches_;
   bool swept_;
-  Surfels surfels_;
+  quality::Surfels surfels_;
   int round_ = 0;
   bool is_searching_ = true;
 };
@@ -69,14 +72,14 @@ class UprightWalls final : public FlatSurfaces {
  public:
   UprightWalls(const SurfelSettings& settings, int searches) : settings_(settings), searches_(searches) {}
 
-  const Surfels& update(const BeamsView& beams, double last_step) override {
+  const quality::Surfels& update(const quality::BeamsView& beams, double last_step) override {
     if (!is_searching_) return walls_;
     is_searching_ = widening_ > 1 || (last_step > kSmallStep && round_++ < searches_);
     if (is_searching_) {
-      walls_ = wall_lines(beams, {.noise = widening_ * settings_.noise});
+      walls_ = quality::wall_lines(beams, {.noise = widening_ * settings_.noise});
       widening_ = std::max(1.0, widening_ / 2);
     }
-    refine_all(walls_, beams, settings_);
+    quality::refine_all(walls_, beams, settings_);
     return walls_;
   }
 
@@ -85,7 +88,7 @@ class UprightWalls final : public FlatSurfaces {
  private:
   SurfelSettings settings_;
   int searches_;
-  Surfels walls_;
+  quality::Surfels walls_;
   double widening_ = 8;  // of the noise, for what views disagree by; halved from one round to the next
   int round_ = 0;
   bool is_searching_ = true;
@@ -101,4 +104,4 @@ std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int 
   return std::make_unique<UprightWalls>(settings, searches);
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,7 +5,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// [standard errors] What is chosen with the parameters is kept from such a step on: beams that join and
 /// leave surfaces at their rims would keep steps from getting any smaller.
@@ -20,7 +20,7 @@ class FlatSurfaces {
   /// One more round, with the beams where the parameters now put them.
   ///
   /// @param last_step  [standard errors] length of the step before; infinite in the first round
-  virtual const Surfels& update(const BeamsView& beams, double last_step) = 0;
+  virtual const quality::Surfels& update(const quality::BeamsView& beams, double last_step) = 0;
 
   /// Whether it has ended to choose which beams belong to which surface.
   virtual bool is_settled() const = 0;
@@ -31,9 +31,10 @@ class FlatSurfaces {
 /// @param searches  rounds after which they are kept, at the latest
 /// @param swept     whether each view sees areas; beams that do not sweep see lines, whose own planes are not
 /// the walls'
-std::unique_ptr<FlatSurfaces> patches(const SurfelSettings& settings, int searches, bool swept = true);
+std::unique_ptr<FlatSurfaces> patches(const quality::SurfelSettings& settings, int searches,
+                                      bool swept = true);
 
 /// Upright walls that beams in the plate's plane see as lines: see wall_lines().
-std::unique_ptr<FlatSurfaces> upright_walls(const SurfelSettings& settings, int searches);
+std::unique_ptr<FlatSurfaces> upright_walls(const quality::SurfelSettings& settings, int searches);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

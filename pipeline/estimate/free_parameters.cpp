@@ -8,7 +8,7 @@
 
 #include "pipeline/estimate/requested_terms.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr const char* kNoBeams =
@@ -96,4 +96,4 @@ LagRange lag_range(const SensorModel& model, double margin) {
   return {.earliest = range.earliest - margin, .latest = range.latest + margin};
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

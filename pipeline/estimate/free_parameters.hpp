@@ -6,7 +6,7 @@
 
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Which parameters a calibration turns, and why it leaves others alone.
 struct FreeParameters {
@@ -34,4 +34,4 @@ struct LagRange {
 };
 LagRange lag_range(const SensorModel& model, double margin);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

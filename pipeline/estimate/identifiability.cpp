@@ -6,7 +6,7 @@
 #include "pipeline/estimate/observability.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kMinMotion = 0.005;   // [m]
@@ -68,4 +68,4 @@ FreeParameters identifiable_parameters(FreeParameters parameters, const SensorMo
   return parameters;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,7 +5,7 @@
 #include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Why identifiable_parameters() removed a parameter.
 inline constexpr const char* kNotByMotion = "it is not identifiable from the motion of the plate";
@@ -21,4 +21,4 @@ inline constexpr const char* kNotByMotion = "it is not identifiable from the mot
 FreeParameters identifiable_parameters(FreeParameters parameters, const SensorModel& model,
                                        const Sample& sample, const ParameterPrior& range);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,12 +5,12 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
-std::vector<float> incidences(const Surfels& surfels, const BeamsView& beams) {
+std::vector<float> incidences(const quality::Surfels& surfels, const quality::BeamsView& beams) {
   std::vector<float> cosines(beams.points.x.size(), 1.0F);
-  for_each_index(surfels.surfels.size(), [&](std::size_t s) {
-    const Surfel& surfel = surfels.surfels[s];
+  quality::for_each_index(surfels.surfels.size(), [&](std::size_t s) {
+    const quality::Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
       const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
       cosines[i] = static_cast<float>(std::abs(surfel.normal.dot(direction)));
@@ -19,4 +19,4 @@ std::vector<float> incidences(const Surfels& surfels, const BeamsView& beams) {
   return cosines;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,9 +5,9 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// How each beam met its surface: |cos β| (see Measurements::cos_incidence), 1 for those on none.
-std::vector<float> incidences(const Surfels& surfels, const BeamsView& beams);
+std::vector<float> incidences(const quality::Surfels& surfels, const quality::BeamsView& beams);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,7 +6,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 void MeasurementBuffer::add(std::shared_ptr<const Measurements> beams,
                             std::shared_ptr<const PlateTrajectory> plate) {
@@ -46,4 +46,4 @@ Sample MeasurementBuffer::sample() {
   return sample;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,7 +6,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Buffers the measurements that flow through a stage. For long recordings it keeps half of the batches
 /// (scans), then a quarter, and so on, so that memory is bounded.
@@ -40,4 +40,4 @@ class MeasurementBuffer {
   PlateTrajectory plate_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -9,7 +9,7 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// Which kind of parameter is held at its prior first.
@@ -44,7 +44,7 @@ std::string known_with(std::size_t held, const std::vector<std::size_t>& known, 
   if (known.empty()) return {};
   const auto h = static_cast<Eigen::Index>(held);
   const Eigen::VectorXd made_up =
-      solve_positive_definite(scaled(known, known), Eigen::VectorXd(scaled(known, held)));
+      statistics::solve_positive_definite(scaled(known, known), Eigen::VectorXd(scaled(known, held)));
   const double largest = made_up.cwiseAbs().maxCoeff();
   std::string text;
   if (largest < kTakesPart) return text;
@@ -65,7 +65,7 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
   std::iota(active.begin(), active.end(), std::size_t{0});
   std::vector<std::size_t> held;
   while (!active.empty()) {
-    const SymmetricEigen eigen = eigendecomposition(scaled(active, active));
+    const statistics::SymmetricEigen eigen = statistics::eigendecomposition(scaled(active, active));
     if (!(eigen.values[0] < 1)) break;
     const auto next =
         active.begin() + static_cast<std::ptrdiff_t>(to_hold(eigen.vectors.col(0), active, free, names));
@@ -86,4 +86,4 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

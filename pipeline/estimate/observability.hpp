@@ -7,7 +7,7 @@
 
 #include <crisp/calibration.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Unobservable parameters of the data.
 struct Observability {
@@ -35,4 +35,4 @@ Observability observability(const Eigen::MatrixXd& information, const std::vecto
 std::string known_with(std::size_t held, const std::vector<std::size_t>& known, const Eigen::MatrixXd& scaled,
                        const std::vector<std::string>& names, const Eigen::VectorXd& scale);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

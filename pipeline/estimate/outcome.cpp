@@ -10,7 +10,7 @@
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/shown_unit.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// Why a parameter has no standard error.
@@ -33,7 +33,7 @@ int decimals_for(double error) {
   constexpr int kMin = 4;
   constexpr int kMax = 12;
   if (!(error > 0)) return kMin;
-  return std::clamp(decimals_that_show(error), kMin, kMax);
+  return std::clamp(data::decimals_that_show(error), kMin, kMax);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ Calibration calibration_of(const Outcome& outcome, const Rig& rig) {
     for (Eigen::Index j = 0; j < m; ++j) calibration.covariance.push_back(outcome.covariance(i, j));
   }
   const auto& order = calibration.covariance_order;
-  for_each_parameter(calibration, [&](const std::string& name, Parameter& parameter) {
+  data::for_each_parameter(calibration, [&](const std::string& name, Parameter& parameter) {
     const auto found = std::find(order.begin(), order.end(), name);
     parameter.free = found != order.end();
     const auto at = found - order.begin();
@@ -75,11 +75,12 @@ Calibration with_angles_near(Calibration calibration, const Rig& rig) {
 std::string table_of(const Calibration& calibration, const Rig& rig) {
   std::map<std::string, double> nominal;
   const Calibration start = nominal_calibration(rig);
-  for_each_parameter(start, [&](const std::string& name, const Parameter& p) { nominal[name] = p.value; });
+  data::for_each_parameter(start,
+                           [&](const std::string& name, const Parameter& p) { nominal[name] = p.value; });
   std::string table =
       fmt::format("{:<24}{:>12}     {:>9}  {:>10}\n", "parameter", "value", "std error", "change");
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
-    const ShownUnit as = shown_unit(p.unit);
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
+    const data::ShownUnit as = data::shown_unit(p.unit);
     const double change = p.value - (nominal.contains(name) ? nominal[name] : 0);
     const int decimals = decimals_for(p.free ? p.std_error * as.factor : 0);
     const std::string error = p.free ? fmt::format("{:.{}f}", p.std_error * as.factor, decimals) : "";
@@ -91,4 +92,4 @@ std::string table_of(const Calibration& calibration, const Rig& rig) {
   return table;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

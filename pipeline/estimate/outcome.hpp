@@ -8,7 +8,7 @@
 #include <crisp/rig.hpp>
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Result of a calibration: values with their covariance.
 struct Outcome {
@@ -34,4 +34,4 @@ Calibration with_angles_near(Calibration calibration, const Rig& rig);
 /// rig's nominal value.
 std::string table_of(const Calibration& calibration, const Rig& rig);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

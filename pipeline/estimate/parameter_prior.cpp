@@ -9,7 +9,7 @@
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kOfBounds = 0.05;  // fraction of a term's bounds within which its parameters are searched
@@ -19,7 +19,7 @@ constexpr double kOfBounds = 0.05;  // fraction of a term's bounds within which 
 std::map<std::string, NominalValue> nominal_values(const Rig& rig) {
   std::map<std::string, NominalValue> known;
   const Calibration nominal = nominal_calibration(rig);
-  for_each_parameter(nominal, [&](const std::string& name, const Parameter& parameter) {
+  data::for_each_parameter(nominal, [&](const std::string& name, const Parameter& parameter) {
     if (parameter.std_error > 0) known[name] = {.value = parameter.value, .std_error = parameter.std_error};
   });
   return known;
@@ -98,4 +98,4 @@ StepBounds step_bounds(const SensorModel& model, const std::vector<std::size_t>&
   return bounds;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

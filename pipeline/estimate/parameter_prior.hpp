@@ -12,7 +12,7 @@
 
 #include "pipeline/estimate/bounded_step.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// A rig's prior knowledge of a parameter.
 struct NominalValue {
@@ -61,4 +61,4 @@ Eigen::VectorXd ranges_of(const ParameterPrior& range, const SensorModel& model,
 Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model,
                            const std::vector<std::size_t>& free);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

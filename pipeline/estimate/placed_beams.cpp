@@ -7,7 +7,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// [m] Between the places of recordings: farther than any beam goes.
@@ -60,14 +60,14 @@ Vectors place_all(const SensorModel& model, const Measurements& beams, const Pla
 
 PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
   constexpr std::size_t kBlock = 8192;  // beams
-  for_each_index(2, [&](std::size_t i) {
+  quality::for_each_index(2, [&](std::size_t i) {
     if (i == 0) points_ = place_all(model, sample.beams, *sample.plate);
     if (i == 1) directions_ = place_all(model, lengthened(sample.beams), *sample.plate);
   });
   const std::size_t n = sample.beams.size();
   views_.resize(n);
-  const RecordingNumbers recording(*sample.plate);
-  for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  const data::RecordingNumbers recording(*sample.plate);
+  quality::for_blocks(n, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d way = at(directions_, i) - at(points_, i);
       set(directions_, i, way.normalized());
@@ -78,7 +78,7 @@ PlacedBeams::PlacedBeams(const SensorModel& model, const Sample& sample) {
 }
 
 void PlacedBeams::align_with(const PlacedBeams& other, const Sample& sample) {
-  const RecordingNumbers recording(*sample.plate);
+  const data::RecordingNumbers recording(*sample.plate);
   std::vector<std::vector<std::size_t>> beams(recording.count());
   for (std::size_t i = 0; i < sample.beams.size(); ++i)
     beams[recording.of(sample.beams.time[i])].push_back(i);
@@ -93,4 +93,4 @@ void PlacedBeams::align_with(const PlacedBeams& other, const Sample& sample) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

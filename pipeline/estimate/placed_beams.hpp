@@ -10,7 +10,7 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// The model moves beams in time beyond the encoder readings.
 class UncoveredBeams final : public Error {
@@ -33,7 +33,7 @@ class PlacedBeams {
   /// Valid while this and the noise live.
   ///
   /// @param noise  see relative_noise(); or none
-  BeamsView view(std::span<const float> noise = {}) const {
+  quality::BeamsView view(std::span<const float> noise = {}) const {
     return {.points = points_.view(), .directions = directions_.view(), .views = views_, .noise = noise};
   }
 
@@ -49,4 +49,4 @@ class PlacedBeams {
   std::vector<std::uint32_t> views_;  // one for each laser and half of its sweep
 };
 
-}  // namespace crisp
+}  // namespace crisp::estimate

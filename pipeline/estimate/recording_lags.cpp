@@ -11,7 +11,7 @@
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// Nothing where no surface is flat, or η is not identifiable.
@@ -30,7 +30,7 @@ std::optional<Outcome> lags_alone(const SensorModel& model, const Sample& record
 
 RecordingLags lags_of_recordings(const SensorModel& model, const Sample& sample,
                                  const RefinementSettings& settings) {
-  const RecordingNumbers number(*sample.plate);
+  const data::RecordingNumbers number(*sample.plate);
   const auto recordings = static_cast<Eigen::Index>(number.count());
   const auto lasers = static_cast<Eigen::Index>(model.lasers());
   RecordingLags lags{
@@ -63,7 +63,7 @@ RecordingLags lags_of_recordings(const SensorModel& model, const Sample& sample,
 }
 
 Sample with_common_lags(Sample sample, const RecordingLags& lags) {
-  const RecordingNumbers number(*sample.plate);
+  const data::RecordingNumbers number(*sample.plate);
   for (std::size_t i = 0; i < sample.beams.size(); ++i) {
     sample.beams.time[i] += lags.beyond(static_cast<Eigen::Index>(number.of(sample.beams.time[i])),
                                         static_cast<Eigen::Index>(sample.beams.laser[i]));
@@ -71,4 +71,4 @@ Sample with_common_lags(Sample sample, const RecordingLags& lags) {
   return sample;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,7 +5,7 @@
 
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Each recording has clock lines of its own, whose errors (some 10 µs), and whatever changed when a device
 /// started anew, are in the lags of its lasers.
@@ -23,4 +23,4 @@ RecordingLags lags_of_recordings(const SensorModel& model, const Sample& sample,
 /// The sample with its times moved so that every recording has the same lags, as far as they are known.
 Sample with_common_lags(Sample sample, const RecordingLags& lags);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

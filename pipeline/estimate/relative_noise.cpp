@@ -9,8 +9,10 @@
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
+
+using quality::Surfels;
 
 constexpr std::size_t kMaxPairs = 120'000;
 constexpr std::size_t kMinPairs = 1000;  // of a bin: they determine its factor to 4 %
@@ -33,12 +35,12 @@ struct Quantities {
 };
 
 /// @param range  is corrected
-std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const BeamsView& placed,
-                           const Measurements& beams, const SurfelSettings& settings,
-                           std::vector<float>& range) {
+std::vector<Pair> pairs_on(const quality::Surfel& surfel, const Surfels& surfels,
+                           const quality::BeamsView& placed, const Measurements& beams,
+                           const quality::SurfelSettings& settings, std::vector<float>& range) {
   std::vector<Pair> pairs;
   const auto members = surfels.beams_of(surfel);
-  const auto residuals = residuals_of(surfel, surfels, placed, settings);
+  const auto residuals = quality::residuals_of(surfel, surfels, placed, settings);
   for (std::size_t k = 0; k < members.size(); ++k)
     range[members[k]] += static_cast<float>(residuals[k].range_change);
   for (std::size_t k = 1; k < members.size(); ++k) {
@@ -55,11 +57,12 @@ std::vector<Pair> pairs_on(const Surfel& surfel, const Surfels& surfels, const B
 /// Pairs from all surfaces, evenly thinned, by laser.
 ///
 /// @param range  is corrected
-std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const BeamsView& placed,
-                                              const Measurements& beams, const SurfelSettings& settings,
+std::vector<std::vector<Pair>> pairs_by_laser(const Surfels& surfels, const quality::BeamsView& placed,
+                                              const Measurements& beams,
+                                              const quality::SurfelSettings& settings,
                                               std::vector<float>& range) {
   std::vector<std::vector<Pair>> of_surfel(surfels.surfels.size());
-  for_each_index(of_surfel.size(), [&](std::size_t s) {
+  quality::for_each_index(of_surfel.size(), [&](std::size_t s) {
     of_surfel[s] = pairs_on(surfels.surfels[s], surfels, placed, beams, settings, range);
   });
   std::size_t count = 0;
@@ -132,7 +135,7 @@ class OfLaser {
     }
     std::vector<double> sizes;
     for (std::size_t k = 0; k < pairs.size(); ++k) sizes.push_back(pairs[k].size / of_pair(k));
-    size_ = kMadToSigma * median_in_place(sizes);
+    size_ = statistics::kMadToSigma * statistics::median_in_place(sizes);
   }
 
   /// [m] 0 where there are too few neighbours.
@@ -156,8 +159,8 @@ class OfLaser {
       sizes[steps.pairs[k].beam].push_back(pairs[k].size / of_pair(k) * steps.of_pair(k));
     }
     for (std::size_t s = 0; s < sizes.size(); ++s) {
-      const double middle = sizes[s].empty() ? 0 : median_in_place(sizes[s]);
-      if (middle > 0) steps.factor[s] = kMadToSigma * middle;
+      const double middle = sizes[s].empty() ? 0 : statistics::median_in_place(sizes[s]);
+      if (middle > 0) steps.factor[s] = statistics::kMadToSigma * middle;
     }
     double mean = 0;
     for (const double factor : steps.factor) mean += factor / static_cast<double>(steps.factor.size());
@@ -169,15 +172,16 @@ class OfLaser {
 };
 
 /// [m] Standard deviation of each beam's range; 0 where it is unknown.
-std::vector<double> noise_by_neighbours(const Surfels& surfels, const BeamsView& placed,
-                                        const Measurements& beams, const SurfelSettings& settings) {
+std::vector<double> noise_by_neighbours(const Surfels& surfels, const quality::BeamsView& placed,
+                                        const Measurements& beams, const quality::SurfelSettings& settings) {
   Quantities by{.incidence = beams.cos_incidence, .remission = beams.remission, .range = beams.range};
   constexpr std::size_t kBeamsOfTask = 16'384;
   const auto pairs = pairs_by_laser(surfels, placed, beams, settings, by.range);
   std::vector<OfLaser> lasers(pairs.size());
-  for_each_index(lasers.size(), [&](std::size_t laser) { lasers[laser] = OfLaser(pairs[laser], by); });
+  quality::for_each_index(lasers.size(),
+                          [&](std::size_t laser) { lasers[laser] = OfLaser(pairs[laser], by); });
   std::vector<double> sizes(beams.size(), 0);
-  for_blocks(sizes.size(), kBeamsOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
+  quality::for_blocks(sizes.size(), kBeamsOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t laser = beams.laser[i];
       if (laser < lasers.size()) sizes[i] = lasers[laser].at(static_cast<std::uint32_t>(i));
@@ -209,13 +213,13 @@ NoiseSums sums_of(const Surfels& surfels, const std::vector<double>& sizes) {
 
 }  // namespace
 
-double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
-                       const SurfelSettings& settings) {
+double neighbour_noise(const Surfels& surfels, const quality::BeamsView& placed, const Measurements& beams,
+                       const quality::SurfelSettings& settings) {
   return sums_of(surfels, noise_by_neighbours(surfels, placed, beams, settings)).usual();
 }
 
-std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
-                                  const SurfelSettings& settings) {
+std::vector<float> relative_noise(const Surfels& surfels, const quality::BeamsView& placed,
+                                  const Measurements& beams, const quality::SurfelSettings& settings) {
   constexpr double kMinGain = 0.05;
   constexpr double kMax = 4;  // times more or less: beyond, it is what few beams of a step have by chance
   const std::vector<double> sizes = noise_by_neighbours(surfels, placed, beams, settings);
@@ -229,4 +233,4 @@ std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& place
   return relative;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -8,7 +8,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Whether two beams that are next to one another on a surface are so in a scan, too.
 inline bool are_neighbours(const Measurements& beams, std::uint32_t before, std::uint32_t beam) {
@@ -19,8 +19,8 @@ inline bool are_neighbours(const Measurements& beams, std::uint32_t before, std:
 /// [m] Noise of ranges from neighbour to neighbour on flat surfaces: the root of the harmonic mean of the
 /// beams' variances, as relative_noise() determines them. Neighbours share a calibration's error, so it does
 /// not matter. 0 where there are too few.
-double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
-                       const SurfelSettings& settings);
+double neighbour_noise(const quality::Surfels& surfels, const quality::BeamsView& placed,
+                       const Measurements& beams, const quality::SurfelSettings& settings);
 
 /// Relative noise of each beam's range, estimated from the data: a factor of its laser's, and one each of the
 /// range, of the incidence and of the remission (in steps of equally many beams). They are estimated from
@@ -31,7 +31,7 @@ double neighbour_noise(const Surfels& surfels, const BeamsView& placed, const Me
 /// @return  n: scaled so that the inverse squares of those on surfaces are 1 on average, which leaves the sum
 ///          of their weights what it is if all are alike. Empty where weights would reduce variances by less
 ///          than a twentieth, which is near chance for equal ones.
-std::vector<float> relative_noise(const Surfels& surfels, const BeamsView& placed, const Measurements& beams,
-                                  const SurfelSettings& settings);
+std::vector<float> relative_noise(const quality::Surfels& surfels, const quality::BeamsView& placed,
+                                  const Measurements& beams, const quality::SurfelSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

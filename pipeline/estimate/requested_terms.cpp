@@ -6,7 +6,7 @@
 #include <crisp/effect_catalogue.hpp>
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 void add(std::vector<TermParameters>& terms, const TermInfo& info) {
@@ -69,4 +69,4 @@ std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vect
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

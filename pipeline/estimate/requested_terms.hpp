@@ -6,7 +6,7 @@
 
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Adds terms of the sensor model, neutral, where a calibration does not have them yet.
 ///
@@ -24,4 +24,4 @@ const EffectParameter* declared(const SensorModel& model, std::size_t parameter)
 std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& requested,
                                        bool forms = false);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -10,7 +10,7 @@
 
 #include "pipeline/data/recordings.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// A number in [0, 1) that depends on nothing but the seed and the index (Steele's SplitMix64).
@@ -70,7 +70,7 @@ Sample select(const Sample& sample, const std::function<bool(std::size_t)>& keep
 }
 
 Sample longest_recording(const Sample& sample) {
-  const RecordingNumbers number(*sample.plate);
+  const data::RecordingNumbers number(*sample.plate);
   if (number.count() < 2) return sample;
   std::vector<std::size_t> beams(number.count(), 0);
   for (const double time : sample.beams.time) ++beams[number.of(time)];
@@ -129,7 +129,7 @@ Sample in_plane(const Sample& sample, double half_width, Half half) {
 
 bool is_in_plane(const Sample& sample) {
   return std::ranges::all_of(sample.beams.mirror_angle, [](float angle) {
-    return std::abs(std::abs(static_cast<double>(angle)) - std::numbers::pi / 2) < 0.5 * kDegree;
+    return std::abs(std::abs(static_cast<double>(angle)) - std::numbers::pi / 2) < 0.5 * data::kDegree;
   });
 }
 
@@ -208,4 +208,4 @@ PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>
           std::move(new_zeros)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -10,7 +10,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// The measurements that a calibration uses, with the plate's motion during them.
 struct Sample {
@@ -28,7 +28,7 @@ Sample longest_recording(const Sample& sample);
 std::map<std::uint16_t, float> mirror_sweeps(const Measurements& beams);
 
 /// [rad] A mirror sweeps over more than this; the beams of a single-beam device have all but one angle.
-inline constexpr float kLeastSweep = 30 * kDegree;
+inline constexpr float kLeastSweep = 30 * data::kDegree;
 
 /// The beams of one laser.
 Sample of_laser(const Sample& sample, std::size_t laser);
@@ -70,4 +70,4 @@ Sample thin_for(double sigma, const Sample& sample);
 /// piece continues at the first reading behind it. (Both, a nanosecond apart, would be a plate of 10⁷ rad/s.)
 PlateTrajectory joined(const std::vector<std::shared_ptr<const PlateTrajectory>>& pieces);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -139,4 +139,4 @@ std::string counts_caveat(const SceneRepeat& period) {
       turns, period.miss * 1e3, period.at_2pi * 1e3, turns);
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

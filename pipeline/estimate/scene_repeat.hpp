@@ -6,7 +6,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// After which angle of the plate, by its encoder, a laser sees the same again.
 struct SceneRepeat {
@@ -28,4 +28,4 @@ bool contradicts_counts(const SceneRepeat& period);
 /// The caveat then, with advice.
 std::string counts_caveat(const SceneRepeat& period);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

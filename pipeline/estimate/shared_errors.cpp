@@ -7,8 +7,10 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
+
+using quality::Division;
 
 constexpr std::uint32_t kMin = 100;  // blocks, to see by how much their block_scores scatter
 
@@ -27,7 +29,7 @@ static_assert(kPlaces * kPlaces == kPlacesOfEach);
 
 /// Intersection of a beam with a surface's plane, independent of the point's noise: otherwise beams would be
 /// sorted by their noise.
-Eigen::Vector2d foot_on(const Surfel& surfel, const BeamsView& beams, std::uint32_t i) {
+Eigen::Vector2d foot_on(const quality::Surfel& surfel, const quality::BeamsView& beams, std::uint32_t i) {
   const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
   const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
   const double incidence = surfel.normal.dot(direction);
@@ -39,7 +41,7 @@ Eigen::Vector2d foot_on(const Surfel& surfel, const BeamsView& beams, std::uint3
 
 }  // namespace
 
-std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot) {
+std::uint32_t place_on(const quality::Surfel& surfel, const Eigen::Vector2d& foot) {
   const auto step = [&](double along) {  // the sides of a square are 1.2 times its radius away
     const double share = std::clamp(along / (2 * surfel.radius) + 0.5, 0.0, 1.0);
     return std::min(kPlaces - 1, static_cast<std::uint32_t>(share * kPlaces));
@@ -81,10 +83,10 @@ Division scan_blocks(const Measurements& beams) {
   return blocks;
 }
 
-Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
+Division place_blocks(const quality::Surfels& surfels, const quality::BeamsView& beams) {
   Division blocks(beams.points.size(), 0);
   for (std::size_t s = 0; s < surfels.surfels.size(); ++s) {
-    const Surfel& surfel = surfels.surfels[s];
+    const quality::Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
       blocks[i] = static_cast<std::uint32_t>(
           (kPlacesOfEach * s + place_on(surfel, foot_on(surfel, beams, i))) % kMin);
@@ -93,13 +95,13 @@ Division place_blocks(const Surfels& surfels, const BeamsView& beams) {
   return blocks;
 }
 
-Eigen::VectorXd widening(const NormalEquations& equations) {
+Eigen::VectorXd widening(const quality::NormalEquations& equations) {
   constexpr double kSure = 2;  // [standard errors of a logarithm]
   const Eigen::Index m = equations.matrix.cols();
   std::vector<std::size_t> all(static_cast<std::size_t>(m));
   std::iota(all.begin(), all.end(), std::size_t{0});
   const Eigen::MatrixXd inverse =
-      solve_positive_definite(equations.matrix, Eigen::MatrixXd(Eigen::MatrixXd::Identity(m, m)));
+      statistics::solve_positive_definite(equations.matrix, Eigen::MatrixXd(Eigen::MatrixXd::Identity(m, m)));
   const Eigen::ArrayXd alone = inverse.diagonal() * equations.covariance_factor();
   Eigen::ArrayXd wider = Eigen::ArrayXd::Ones(m);
   for (std::size_t division = 0; division < equations.block_scores.size(); ++division) {
@@ -127,9 +129,9 @@ Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd
   return covariance + excess.asDiagonal() * covariance * excess.asDiagonal();
 }
 
-std::vector<Division> shared_errors(const Measurements& beams, const Surfels& surfels,
-                                    const BeamsView& placed) {
+std::vector<Division> shared_errors(const Measurements& beams, const quality::Surfels& surfels,
+                                    const quality::BeamsView& placed) {
   return {recording_blocks(beams), scan_blocks(beams), place_blocks(surfels, placed)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -9,17 +9,17 @@
 
 #include "pipeline/quality/surfel_equations.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// For each beam the piece of the recording that it is of. Pieces share no error: what is left of the
 /// encoder's steps is gone after a tenth of a second; and they are many enough (a hundred, at least) to see
 /// by how much their block_scores scatter. Nothing is a piece in which no beam was fired.
-Division recording_blocks(const Measurements& beams);
+quality::Division recording_blocks(const Measurements& beams);
 
 /// For each beam the hundredth of its laser's scan that it is of: what each direction of a mirror is off by
 /// for good, as where it has a weight of its own between two peaks of noise, no piece of the recording shows.
 /// A laser of fewer directions has pieces of the recording in their place.
-Division scan_blocks(const Measurements& beams);
+quality::Division scan_blocks(const Measurements& beams);
 
 /// Into how many places a surface is divided.
 inline constexpr std::uint32_t kPlacesOfEach = 16;
@@ -27,23 +27,23 @@ inline constexpr std::uint32_t kPlacesOfEach = 16;
 /// Which of the places of a surface it is.
 ///
 /// @param foot  [m] from its middle, along u and v
-std::uint32_t place_on(const Surfel& surfel, const Eigen::Vector2d& foot);
+std::uint32_t place_on(const quality::Surfel& surfel, const Eigen::Vector2d& foot);
 
 /// For each beam which of a hundred lots of places it meets, see place_on(): where a
 /// surface is no plane, it is none at every turn, which no other division shows. Beams of no surface are of
 /// the first.
-Division place_blocks(const Surfels& surfels, const BeamsView& beams);
+quality::Division place_blocks(const quality::Surfels& surfels, const quality::BeamsView& beams);
 
 /// All of these.
 ///
 /// @param placed  the same beams
-std::vector<Division> shared_errors(const Measurements& beams, const Surfels& surfels,
-                                    const BeamsView& placed);
+std::vector<quality::Division> shared_errors(const Measurements& beams, const quality::Surfels& surfels,
+                                             const quality::BeamsView& placed);
 
 /// @param equations  of m parameters, at their optimum, with divisions
 /// @return  m: by how much larger their standard errors are than the noise of single beams makes them, as the
 ///          blocks disagree. 1 where that may be chance.
-Eigen::VectorXd widening(const NormalEquations& equations);
+Eigen::VectorXd widening(const quality::NormalEquations& equations);
 
 /// The factors by which the standard errors of data and prior together grow if those of the data alone grow
 /// by `by`: no parameter ends with more than its prior's.
@@ -57,4 +57,4 @@ Eigen::VectorXd widening_with_prior(const Eigen::VectorXd& by, const Eigen::Vect
 /// @param by  m: factors of the standard errors, 1 or more
 Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

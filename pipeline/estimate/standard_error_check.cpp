@@ -11,7 +11,7 @@
 
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 void check_errors(const Outcome& outcome, const Measurements& beams, double floor,
                   const ParameterPrior& prior) {
@@ -29,9 +29,10 @@ void check_errors(const Outcome& outcome, const Measurements& beams, double floo
     const auto kind = most.find(name.substr(name.find('.')));
     const auto i = static_cast<Eigen::Index>(k);
     if (kind == most.end() || outcome.covariance(i, i) >= std::pow(across / kind->second, 2)) continue;
-    throw internal_error(fmt::format("{} has a standard error of {:.2g}, less than the beams' noise allows",
-                                     name, std::sqrt(outcome.covariance(i, i))));
+    throw data::internal_error(
+        fmt::format("{} has a standard error of {:.2g}, less than the beams' noise allows", name,
+                    std::sqrt(outcome.covariance(i, i))));
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -4,7 +4,7 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/parameter_prior.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Refuses standard errors of λ, τ, α and η that the noise of so many beams does not allow: a fault of this
 /// program, as where one beam was taken to move infinitely fast.
@@ -15,4 +15,4 @@ namespace crisp {
 void check_errors(const Outcome& outcome, const Measurements& beams, double floor,
                   const ParameterPrior& prior);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

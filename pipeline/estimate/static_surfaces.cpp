@@ -8,7 +8,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// Spread of a surfel's views.
@@ -17,8 +17,8 @@ struct Spread {
   double squares = 0;    // [m²] mean square over them
   double by_chance = 0;  // [σ²] what of that the noise of ranges makes
 };
-Spread spread_of_views(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams,
-                       std::size_t views) {
+Spread spread_of_views(const quality::Surfel& surfel, const quality::Surfels& surfels,
+                       const quality::BeamsView& beams, std::size_t views) {
   struct View {
     double weight = 0;
     double sum = 0;
@@ -61,20 +61,21 @@ double far_for_most_beams(std::vector<Spread> spreads) {
 
 }  // namespace
 
-std::vector<bool> static_surfaces(const Surfels& surfels, const BeamsView& beams, double noise) {
+std::vector<bool> static_surfaces(const quality::Surfels& surfels, const quality::BeamsView& beams,
+                                  double noise) {
   constexpr double kMuchMore = 5;
   constexpr double kMin = 0.25;  // [σ]
   constexpr double kChance = 4;  // of what is expected by chance: χ² of five is beyond once in a thousand
   if (surfels.surfels.empty() || beams.views.empty()) return std::vector<bool>(surfels.surfels.size(), true);
   const std::size_t views = *std::ranges::max_element(beams.views) + 1;
   std::vector<Spread> spreads(surfels.surfels.size());
-  for_each_index(spreads.size(), [&](std::size_t s) {
+  quality::for_each_index(spreads.size(), [&](std::size_t s) {
     spreads[s] = spread_of_views(surfels.surfels[s], surfels, beams, views);
   });
   std::vector<double> sizes;
   for (const Spread& spread : spreads) sizes.push_back(std::sqrt(spread.squares));
   const double most =
-      std::max({kMin * noise, kMuchMore * median_in_place(sizes), far_for_most_beams(spreads)});
+      std::max({kMin * noise, kMuchMore * statistics::median_in_place(sizes), far_for_most_beams(spreads)});
   std::vector<bool> result;
   for (const Spread& spread : spreads) {
     result.push_back(spread.squares <= most * most + kChance * noise * noise * spread.by_chance);
@@ -82,12 +83,12 @@ std::vector<bool> static_surfaces(const Surfels& surfels, const BeamsView& beams
   return result;
 }
 
-Surfels kept(const Surfels& surfels, const std::vector<bool>& keep) {
-  Surfels result{.surfels = {}, .members = surfels.members, .weights = surfels.weights};
+quality::Surfels kept(const quality::Surfels& surfels, const std::vector<bool>& keep) {
+  quality::Surfels result{.surfels = {}, .members = surfels.members, .weights = surfels.weights};
   for (std::size_t k = 0; k < surfels.surfels.size(); ++k) {
     if (keep[k]) result.surfels.push_back(surfels.surfels[k]);
   }
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -5,7 +5,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Detects static surfels: those that the views meet at the same place, relative to the other surfels.
 ///
@@ -18,9 +18,10 @@ namespace crisp {
 ///
 /// @param noise  [m] standard deviation of a range
 /// @return  for each surfel whether it is static
-std::vector<bool> static_surfaces(const Surfels& surfels, const BeamsView& beams, double noise);
+std::vector<bool> static_surfaces(const quality::Surfels& surfels, const quality::BeamsView& beams,
+                                  double noise);
 
 /// The selected surfels.
-Surfels kept(const Surfels& surfels, const std::vector<bool>& keep);
+quality::Surfels kept(const quality::Surfels& surfels, const std::vector<bool>& keep);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -10,8 +10,12 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
+
+using quality::BeamsView;
+using quality::Surfels;
+using quality::SurfelSettings;
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr double kGrazing = 0.05;  // as where surfels are fitted
@@ -23,7 +27,7 @@ Eigen::Vector3d at(const PointsView& points, std::uint32_t i) {
 /// A surfel with its borders: the box around its beams in (u, v) [m], from its middle.
 class Claimant {
  public:
-  Claimant(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams) : surfel_(surfel) {
+  Claimant(const quality::Surfel& surfel, const Surfels& surfels, const BeamsView& beams) : surfel_(surfel) {
     for (const std::uint32_t i : surfels.beams_of(surfel)) take(at(beams.points, i));
   }
 
@@ -90,7 +94,7 @@ class Claimant {
     return {surfel_.u.dot(offset), surfel_.v.dot(offset)};
   }
 
-  const Surfel& surfel_;
+  const quality::Surfel& surfel_;
   Eigen::AlignedBox2d box_;
   double beams_ = 0;
 };
@@ -141,7 +145,7 @@ std::vector<std::uint32_t> owners(const std::vector<Claimant>& claimants, const 
   constexpr std::size_t kBlock =
       32;  // beams that were fired one after the other, and so end near one another
   std::vector<std::uint32_t> result(some.size());
-  for_blocks(some.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  quality::for_blocks(some.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto near = near_any(claimants, beams, some.subspan(begin, end - begin), settings, associations);
     for (std::size_t k = begin; k < end; ++k) {
       result[k] = owner(claimants, near, beams, some[k], settings, associations);
@@ -152,13 +156,13 @@ std::vector<std::uint32_t> owners(const std::vector<Claimant>& claimants, const 
 
 std::vector<Claimant> claimants_of(const Surfels& surfels, const BeamsView& beams) {
   std::vector<Claimant> claimants;
-  for (const Surfel& surfel : surfels.surfels) claimants.emplace_back(surfel, surfels, beams);
+  for (const quality::Surfel& surfel : surfels.surfels) claimants.emplace_back(surfel, surfels, beams);
   return claimants;
 }
 
 /// The surfels that own enough of the beams, with what they own.
-Surfels sorted_by_owner(const std::vector<Surfel>& surfels, const std::vector<std::uint32_t>& owner_of,
-                        const SurfelSettings& settings) {
+Surfels sorted_by_owner(const std::vector<quality::Surfel>& surfels,
+                        const std::vector<std::uint32_t>& owner_of, const SurfelSettings& settings) {
   std::vector<std::vector<std::uint32_t>> members(surfels.size());
   for (std::uint32_t i = 0; i < owner_of.size(); ++i) {
     if (owner_of[i] != kNone) members[owner_of[i]].push_back(i);
@@ -206,4 +210,4 @@ Surfels grow_surfaces(const Surfels& surfels, const BeamsView& beams, const Surf
   return sorted_by_owner(surfels.surfels, owner_of, settings);
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -3,7 +3,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 struct AssociationSettings {
   double margin = 0.35;  ///< [m] by which a surface may reach beyond the beams that it was found from
@@ -18,14 +18,16 @@ struct AssociationSettings {
 ///
 /// @return  the same surfaces with their associated beams, each of weight 1; those with fewer than
 ///          settings.min_points are removed. Planes stay as they are: see refine().
-Surfels associate_with_surfaces(const Surfels& found, const BeamsView& beams, const SurfelSettings& settings,
-                                const AssociationSettings& associations = {});
+quality::Surfels associate_with_surfaces(const quality::Surfels& found, const quality::BeamsView& beams,
+                                         const quality::SurfelSettings& settings,
+                                         const AssociationSettings& associations = {});
 
 /// Lets surfaces claim what is left, again and again while they grow: where beams are few, as on a house
 /// front that is far away, most of a surface lies beyond the beams that it was found from.
 ///
 /// @return  the same surfaces with more beams, each of weight 1. Planes are left as they are: see refine().
-Surfels grow_surfaces(const Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings,
-                      const AssociationSettings& associations);
+quality::Surfels grow_surfaces(const quality::Surfels& surfels, const quality::BeamsView& beams,
+                               const quality::SurfelSettings& settings,
+                               const AssociationSettings& associations);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

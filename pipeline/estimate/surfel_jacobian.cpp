@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-namespace crisp {
+namespace crisp::estimate {
 
 Measurements with_range_changes(const Measurements& from, std::span<const std::uint32_t> beams,
                                 std::span<const double> range_change) {
@@ -32,15 +32,15 @@ void fill_surfel_rows(const SensorModel& model, const Measurements& beams, const
   }
 }
 
-DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
-                           const std::vector<std::size_t>& free) {
+quality::DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
+                                    const std::vector<std::size_t>& free) {
   std::vector<std::size_t> columns(free.size());
   std::iota(columns.begin(), columns.end(), std::size_t{0});
-  return [&, columns](const Surfel& surfel, std::span<const std::uint32_t> beams,
+  return [&, columns](const quality::Surfel& surfel, std::span<const std::uint32_t> beams,
                       std::span<const double> range_change, std::span<double> rows) {
     fill_surfel_rows(model, with_range_changes(sample.beams, beams, range_change), *sample.plate, free,
                      surfel.normal, columns, free.size(), rows);
   };
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -6,14 +6,14 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Derivatives of a sample's points across surfels by the model's free parameters: normal · ∂x/∂θ, at each
 /// beam's intersection with the surfel's plane. Refers to its arguments, which must outlive it.
 ///
 /// @param free  m indices into model.values()
-DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
-                           const std::vector<std::size_t>& free);
+quality::DerivativeRows surfel_rows(const SensorModel& model, const Sample& sample,
+                                    const std::vector<std::size_t>& free);
 
 /// Some beams of `from`, with changed ranges.
 ///
@@ -28,4 +28,4 @@ void fill_surfel_rows(const SensorModel& model, const Measurements& beams, const
                       const std::vector<std::size_t>& free, const Eigen::Vector3d& normal,
                       const std::vector<std::size_t>& columns, std::size_t stride, std::span<double> rows);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -21,7 +21,7 @@
 #include "pipeline/estimate/standard_error_check.hpp"
 #include "pipeline/estimate/surfel_refiner.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 /// One laser that has not come round to see surfaces from its other side, too, has only their flatness to go
@@ -122,10 +122,10 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
 std::vector<std::string> far_moves(const SensorModel& start, const Outcome& found,
                                    const ParameterPrior& prior) {
   constexpr double kFar = 2;
-  std::map<std::string, ShownUnit> units;
+  std::map<std::string, data::ShownUnit> units;
   const Calibration calibration = found.model.calibration();
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
-    units[name] = shown_unit(parameter.unit);
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
+    units[name] = data::shown_unit(parameter.unit);
   });
   const Eigen::VectorXd trusted = kFar * ranges_of(prior, start, found.free);
   const Eigen::VectorXd from = picked(start, found.free);
@@ -134,7 +134,7 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
   for (Eigen::Index k = 0; k < from.size(); ++k) {
     const std::string& name = start.names()[found.free[static_cast<std::size_t>(k)]];
     if (std::abs(to[k] - from[k]) <= trusted[k] || prior.nominal.contains(name)) continue;
-    const ShownUnit& unit = units.at(name);
+    const data::ShownUnit& unit = units.at(name);
     moves.push_back(fmt::format("{} moved from {:.4g} to {:.4g} {}, by more than {:.3g} {}", name,
                                 from[k] * unit.factor, to[k] * unit.factor, unit.name,
                                 trusted[k] * unit.factor, unit.name));
@@ -187,4 +187,4 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

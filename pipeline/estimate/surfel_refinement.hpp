@@ -11,13 +11,13 @@
 #include "pipeline/estimate/view_consistency.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 struct RefinementSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
   std::vector<std::string> terms;  ///< of the model, to be found as well: see requested_terms.hpp
   bool forms = false;  ///< whether the terms' forms are to be found as well, from about the right ones
-  SurfelSettings surfels;
+  quality::SurfelSettings surfels;
   ParameterPrior prior{
       .lambda = 0.05, .tau = 0.03, .alpha = 0.05, .eta = 0.01, .other = 0.05};  ///< see below
   double angle_step = 0;   ///< [rad] of the encoder, for the standard errors; 0: none
@@ -62,4 +62,4 @@ using RoundReporter = std::function<bool(int round)>;
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
                              const RefinementSettings& settings, const RoundReporter& report = {});
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -15,7 +15,7 @@
 #include "pipeline/estimate/static_surfaces.hpp"
 #include "pipeline/estimate/surfel_jacobian.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 namespace {
 
@@ -68,8 +68,8 @@ bool SurfelRefiner::step() {
 /// Step to where the linearized posterior is largest within the parameters' bounds; computes the information
 /// and the covariance.
 Eigen::VectorXd SurfelRefiner::posterior_step(const PlacedBeams& placed) {
-  equations_ = normal_equations(found_, placed.view(noise_), free_.size(),
-                                surfel_rows(model_, sample_, free_), settings_.surfels);
+  equations_ = quality::normal_equations(found_, placed.view(noise_), free_.size(),
+                                         surfel_rows(model_, sample_, free_), settings_.surfels);
   information_ = equations_.matrix / equations_.covariance_factor();
   const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
   const Eigen::VectorXd from_start = picked(model_, free_) - centres_of(settings_.prior, start_, free_);
@@ -132,7 +132,7 @@ Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
 /// Estimates the beams' relative noise on the surfaces as first found, and once more on the static ones.
 ///
 /// @return  whether the beams' weights changed
-bool SurfelRefiner::update_noise(const BeamsView& placed) {
+bool SurfelRefiner::update_noise(const quality::BeamsView& placed) {
   constexpr int kTimes = 2;
   if (last_step_ > kSmallStep || noise_updates_ == kTimes) return false;
   ++noise_updates_;
@@ -144,7 +144,8 @@ bool SurfelRefiner::update_noise(const BeamsView& placed) {
 /// Selects the static surfaces anew while the parameters move, for a few rounds on the final surfaces, and
 /// then keeps the selection: two selections may each have the other's surfaces for moving at their optimum,
 /// and the steps would alternate between them for ever.
-Surfels SurfelRefiner::select_static(const Surfels& found, const BeamsView& beams) {
+quality::Surfels SurfelRefiner::select_static(const quality::Surfels& found,
+                                              const quality::BeamsView& beams) {
   constexpr int kTimes = 5;
   const bool is_moving = last_step_ > kSmallStep && selections_ < kTimes;
   if (is_moving || is_static_.size() != found.surfels.size()) {
@@ -163,4 +164,4 @@ std::vector<std::string> SurfelRefiner::lasers() const {
   return names;
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -15,7 +15,7 @@
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// Gauss-Newton steps of a model against the flat surfaces that its beams meet, with the start as one more
 /// observation (a Gaussian prior).
@@ -59,13 +59,13 @@ class SurfelRefiner {
  private:
   Eigen::VectorXd posterior_step(const PlacedBeams& placed);
   void update_damping(const Eigen::VectorXd& step);
-  Eigen::VectorXd widening_by_quantization(const NormalEquations& without) const;
+  Eigen::VectorXd widening_by_quantization(const quality::NormalEquations& without) const;
   Eigen::VectorXd keep_covered(Eigen::VectorXd values) const;
   double prior_of_held(const std::string& name) const;
   ConsiderCovariance consider_with(const std::vector<std::size_t>& held, const Eigen::VectorXd& prior) const;
   void remove(std::size_t at);
-  bool update_noise(const BeamsView& placed);
-  Surfels select_static(const Surfels& found, const BeamsView& beams);
+  bool update_noise(const quality::BeamsView& placed);
+  quality::Surfels select_static(const quality::Surfels& found, const quality::BeamsView& beams);
   std::vector<std::string> lasers() const;
 
   SensorModel start_;
@@ -77,10 +77,10 @@ class SurfelRefiner {
   std::vector<bool> is_static_;  // of the surfels
   std::vector<float> noise_;     // of the beams, relative to one another
   int noise_updates_ = 0;
-  int selections_ = 0;  // of static surfaces among the final ones
-  Surfels all_;         // in the last round
-  Surfels found_;       // of them those that count
-  NormalEquations equations_;
+  int selections_ = 0;      // of static surfaces among the final ones
+  quality::Surfels all_;    // in the last round
+  quality::Surfels found_;  // of them those that count
+  quality::NormalEquations equations_;
   Eigen::MatrixXd information_;
   Eigen::MatrixXd covariance_;
   Eigen::VectorXd last_change_;
@@ -91,4 +91,4 @@ class SurfelRefiner {
 /// The η at which the encoder readings have to cover a refinement's beams.
 LagRange refined_lags(const SensorModel& start, const ParameterPrior& prior);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -16,7 +16,7 @@
 #include "pipeline/estimate/surfel_refiner.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kMatters = 0.1;  // of an error as a drawing has: 0.5 mm, 0.1°, 0.1 ms
@@ -25,7 +25,7 @@ constexpr double kMatters = 0.1;  // of an error as a drawing has: 0.5 mm, 0.1°
 double of_a_drawing(const std::string& name) {
   if (name.ends_with(".tau")) return 5e-3;
   if (name.ends_with(".eta")) return 1e-3;
-  return 1 * kDegree;
+  return 1 * data::kDegree;
 }
 
 }  // namespace
@@ -53,9 +53,9 @@ std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
 void SurfelRefiner::widen_by_shared_errors() {
   if (found_.surfels.empty()) return;
   const PlacedBeams placed(model_, sample_);
-  const auto equations =
-      normal_equations(found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_),
-                       settings_.surfels, shared_errors(sample_.beams, found_, placed.view(noise_)));
+  const auto equations = quality::normal_equations(found_, placed.view(noise_), free_.size(),
+                                                   surfel_rows(model_, sample_, free_), settings_.surfels,
+                                                   shared_errors(sample_.beams, found_, placed.view(noise_)));
   const Eigen::VectorXd of_prior =
       covariance_.diagonal().cwiseQuotient(ranges_of(settings_.prior, model_, free_).cwiseAbs2());
   covariance_ = widened(covariance_, widening_with_prior(widening(equations), of_prior));
@@ -123,24 +123,24 @@ ConsiderCovariance SurfelRefiner::consider_with(const std::vector<std::size_t>& 
   std::vector<std::string> names;
   for (const std::size_t parameter : all) names.push_back(model_.names()[parameter]);
   const PlacedBeams placed(model_, sample_);
-  const auto equations = normal_equations(found_, placed.view(noise_), all.size(),
-                                          surfel_rows(model_, sample_, all), settings_.surfels);
+  const auto equations = quality::normal_equations(found_, placed.view(noise_), all.size(),
+                                                   surfel_rows(model_, sample_, all), settings_.surfels);
   return consider(covariance_, equations.matrix, names, prior);
 }
 
 /// The factors by which standard errors grow since beams share the errors of the encoder's steps.
 ///
 /// @param without  the equations as if they did not
-Eigen::VectorXd SurfelRefiner::widening_by_quantization(const NormalEquations& without) const {
+Eigen::VectorXd SurfelRefiner::widening_by_quantization(const quality::NormalEquations& without) const {
   const PlacedBeams placed(model_, sample_);
   const auto noise = noise_with_quantization(found_, placed.view(noise_), sample_, settings_.angle_step,
                                              settings_.surfels.noise);
-  const auto with = normal_equations(found_, placed.view(noise), free_.size(),
-                                     surfel_rows(model_, sample_, free_), settings_.surfels);
+  const auto with = quality::normal_equations(found_, placed.view(noise), free_.size(),
+                                              surfel_rows(model_, sample_, free_), settings_.surfels);
   const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
-  const auto variances = [&](const NormalEquations& equations) -> Eigen::VectorXd {
+  const auto variances = [&](const quality::NormalEquations& equations) -> Eigen::VectorXd {
     const Eigen::MatrixXd information = equations.matrix / without.covariance_factor();
-    return inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
+    return statistics::inverse(information + Eigen::MatrixXd(prior.asDiagonal())).diagonal();
   };
   return variances(with).cwiseQuotient(variances(without)).cwiseSqrt().cwiseMax(1);
 }
@@ -159,4 +159,4 @@ void SurfelRefiner::remove(std::size_t at) {
   free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -16,7 +16,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 namespace {
 
 constexpr double kDeviationsApart = 3;  // [σ] by which views may miss one another
@@ -83,7 +83,7 @@ struct Piece {
     const double apart = kDeviationsApart * std::hypot(errors.range, farthest * errors.angle);
     std::vector<double> middles;
     for (auto& own : distances) {
-      middles.push_back(own.empty() ? 0 : median_in_place(own));
+      middles.push_back(own.empty() ? 0 : statistics::median_in_place(own));
     }
     for (std::size_t view = 0; view < distances.size(); ++view) {
       const auto beams = static_cast<double>(distances[view].size());
@@ -109,7 +109,8 @@ struct Piece {
 /// One surfel in pieces.
 class Pieces {
  public:
-  Pieces(const Surfel& surfel, const Surfels& surfels, const BeamsView& beams, const ViewPartition& partition)
+  Pieces(const quality::Surfel& surfel, const quality::Surfels& surfels, const quality::BeamsView& beams,
+         const ViewPartition& partition)
       : surfel_(surfel), beams_(beams), partition_(partition) {
     for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) add(surfels.members[k]);
   }
@@ -164,13 +165,13 @@ class Pieces {
     piece->second.through[partition_.of_beam[beam]] += 1;
   }
 
-  const Surfel& surfel_;
-  const BeamsView& beams_;
+  const quality::Surfel& surfel_;
+  const quality::BeamsView& beams_;
   const ViewPartition& partition_;
   std::map<Cell, Piece> pieces_;
 };
 
-Orientation orientation_of(const Surfel& surfel) {
+Orientation orientation_of(const quality::Surfel& surfel) {
   constexpr double kLevel = 0.7;  // cosine of 45° between normal and spin axis
   return std::abs(surfel.normal.z()) > kLevel ? Orientation::level : Orientation::upright;
 }
@@ -223,10 +224,10 @@ ViewPartition by_quarter(const Sample& sample) {
       .of_beam = {},
       .advice =
           "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; `crisp diagnose` searches for the cause, and corrects a slip"};
-  const auto recordings = recordings_of(*sample.plate);
-  const RecordingNumbers numbers(*sample.plate);
+  const auto recordings = data::recordings_of(*sample.plate);
+  const data::RecordingNumbers numbers(*sample.plate);
   for (const double time : sample.beams.time) {
-    const Recording& own = recordings[numbers.of(time)];
+    const data::Recording& own = recordings[numbers.of(time)];
     const double share = (time - own.begin) / (own.end - own.begin);
     partition.of_beam.push_back(static_cast<std::uint32_t>(std::clamp(4 * share, 0.0, 3.0)));
   }
@@ -243,15 +244,16 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
   return partitions;
 }
 
-std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
-                                              const ViewPartition& partition, const ViewErrors& errors) {
+std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
+                                              const quality::BeamsView& beams, const ViewPartition& partition,
+                                              const ViewErrors& errors) {
   constexpr double kMinPart = 0.02;  // of a view's beams: fewer are no reason for a caveat
   constexpr double kMinBeams = 500;
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
   std::vector<PairSums> of_surfel(surfels.surfels.size(), PairSums(n));
-  for_each_index(of_surfel.size(), [&](std::size_t s) {
-    const Surfel& surfel = surfels.surfels[s];
+  quality::for_each_index(of_surfel.size(), [&](std::size_t s) {
+    const quality::Surfel& surfel = surfels.surfels[s];
     Pieces pieces(surfel, surfels, beams, partition);
     pieces.find_beams_through(surfels.beams_of(surfel), directions);
     pieces.add_to(of_surfel[s], errors);
@@ -290,4 +292,4 @@ std::optional<std::string> inconsistency(const ViewPartition& partition,
       fmt::format(fmt::runtime(partition.advice), suspect_of(*least, pairs)));
 }
 
-}  // namespace crisp
+}  // namespace crisp::estimate

@@ -9,7 +9,7 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::estimate {
 
 /// A division of beams into views of the same scene that a right calibration makes consistent.
 struct ViewPartition {
@@ -49,8 +49,9 @@ struct ViewConsistency {
 
 /// All ordered pairs of a partition's views that have beams on such surfaces in the same directions, in the
 /// order of the views. Pairs with few such beams are left out.
-std::vector<ViewConsistency> view_consistency(const Surfels& surfels, const BeamsView& beams,
-                                              const ViewPartition& partition, const ViewErrors& errors);
+std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
+                                              const quality::BeamsView& beams, const ViewPartition& partition,
+                                              const ViewErrors& errors);
 
 /// "walls" or "floors and ceilings".
 const char* in_words(Orientation orientation);
@@ -59,4 +60,4 @@ const char* in_words(Orientation orientation);
 std::optional<std::string> inconsistency(const ViewPartition& partition,
                                          const std::vector<ViewConsistency>& pairs);
 
-}  // namespace crisp
+}  // namespace crisp::estimate

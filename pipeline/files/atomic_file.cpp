@@ -45,7 +45,7 @@ void refuse_no_file(const fs::path& file) {
 
 /// A file of a new name next to `file`, whose name shows its purpose.
 std::FILE* create_aside(const fs::path& file, fs::path& aside) {
-  aside = file.parent_path() / fmt::format(".{}.{}{}", file.filename().string(), unique_name(), kPart);
+  aside = file.parent_path() / fmt::format(".{}.{}{}", file.filename().string(), files::unique_name(), kPart);
   const int descriptor = open(aside.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(file, errno);
   std::FILE* stream = fdopen(descriptor, "w+b");
@@ -61,7 +61,7 @@ bool is_left_over(const fs::path& file) {
   const std::string name = file.filename().string();
   if (!name.starts_with('.') || !name.ends_with(kPart)) return false;
   const std::string stem = name.substr(0, name.size() - std::strlen(kPart));
-  return liveness_of_maker(stem.substr(stem.rfind('.') + 1)) == Liveness::dead;
+  return files::liveness_of_maker(stem.substr(stem.rfind('.') + 1)) == files::Liveness::dead;
 }
 
 /// Makes the renaming durable. Some file systems cannot; that is no reason to fail.

@@ -15,7 +15,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 Error cannot_read_bytes(const std::filesystem::path& path, int error) {
@@ -119,4 +119,4 @@ ByteStreamBuffer::int_type ByteStreamBuffer::underflow() {
   return traits_type::to_int_type(*gptr());
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -12,7 +12,7 @@
 
 #include "pipeline/files/decompressor.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// The bytes of a file or a pipe in order, decompressed if the file is compressed by gzip or zstd. A pipe
 /// without a writer is waited for, until `interrupted` returns true.
@@ -69,4 +69,4 @@ class ByteStreamBuffer final : public std::streambuf {
   std::vector<char> buffer_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::files

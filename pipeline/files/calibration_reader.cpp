@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using files::YamlMap;
+using files::YamlNode;
+
 /// Sizes beyond which a value is implausible, in SI.
 constexpr double kLargestAngle = 100, kLargestOffset = 10, kLargestLag = 10;
 
@@ -20,7 +23,7 @@ class CalibrationReader {
 
   Calibration read(const YamlNode& root) {
     YamlMap map(root, "calibration", errors_);
-    check_schema(map, 1);
+    files::check_schema(map, 1);
     if (map.find("caveats")) calibration_.caveats = texts(map, "caveats");
     if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
     if (const YamlNode* plate = map.find("plate")) read_plate(*plate);
@@ -112,7 +115,8 @@ class CalibrationReader {
     const YamlNode* written = map.require("unit");
     if (written) parameter.unit = map.text("unit", unit);
     if (written && !unit.empty() && parameter.unit != unit) {
-      map.fail(written->place, describe(*written) + " is not its unit", "convert the value to " + unit);
+      map.fail(written->place, files::describe(*written) + " is not its unit",
+               "convert the value to " + unit);
     }
     if (written && parameter.unit.empty())
       map.fail(written->place, "there is no unit", "write 1 for a plain number");
@@ -129,10 +133,10 @@ class CalibrationReader {
     calibration_.covariance_order = texts(map, "order");
     if (const YamlNode* values = list(map, "values")) {
       for (const auto& item : values->items) {
-        if (const auto number = read_number(item, "", wrong))
+        if (const auto number = files::read_number(item, "", wrong))
           calibration_.covariance.push_back(*number);
         else
-          map.fail(item.place, "'values': " + wrong, expected_number(""));
+          map.fail(item.place, "'values': " + wrong, files::expected_number(""));
       }
       const std::size_t m = calibration_.covariance_order.size();
       if (values->items.size() != m * m) {
@@ -146,7 +150,7 @@ class CalibrationReader {
   static const YamlNode* list(YamlMap& map, const std::string& key) {
     const YamlNode* node = map.require(key);
     if (!node || node->kind == YamlNode::Kind::sequence) return node;
-    map.fail(node->place, "'" + key + "': " + describe(*node) + " is not a list", "write [a, b]");
+    map.fail(node->place, "'" + key + "': " + files::describe(*node) + " is not a list", "write [a, b]");
     return nullptr;
   }
 
@@ -156,7 +160,7 @@ class CalibrationReader {
     if (!node) return read;
     for (const auto& item : node->items) {
       std::string wrong;
-      if (auto text = read_text(item, wrong))
+      if (auto text = files::read_text(item, wrong))
         read.push_back(std::move(*text));
       else
         map.fail(item.place, fmt::format("'{}': {}", key, wrong), "expected is a text");
@@ -178,17 +182,17 @@ class CalibrationReader {
         pair.refuse_others();
       } else {
         std::string wrong;
-        if (const auto figure = read_number(value, "", wrong))
+        if (const auto figure = files::read_number(value, "", wrong))
           calibration_.quality[name] = *figure;
         else
-          map.fail(value.place, fmt::format("'{}': {}", name, wrong), expected_number(""));
+          map.fail(value.place, fmt::format("'{}': {}", name, wrong), files::expected_number(""));
       }
     }
   }
 
   void read_unobservable(const YamlNode& node, YamlMap& parent) {
     if (node.kind != YamlNode::Kind::sequence) {
-      parent.fail(node.place, "'unobservable': " + describe(node) + " is not a list",
+      parent.fail(node.place, "'unobservable': " + files::describe(node) + " is not a list",
                   "write [{parameter: NAME}]");
     }
     for (const auto& item : node.items) {
@@ -204,7 +208,7 @@ class CalibrationReader {
     YamlMap map(node, "provenance", errors_);
     for (const auto& [key, place, value] : node.entries) {
       std::string wrong;
-      if (auto text = read_text(value, wrong))
+      if (auto text = files::read_text(value, wrong))
         calibration_.provenance[key] = std::move(*text);
       else
         map.fail(value.place, fmt::format("'{}': {}", key, wrong), "expected is a text");
@@ -218,16 +222,24 @@ class CalibrationReader {
 
 }  // namespace
 
+}  // namespace crisp
+
+namespace crisp::files {
+
 Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge) {
   return CalibrationReader(judge).read(root);
 }
 
+}  // namespace crisp::files
+
+namespace crisp {
+
 Calibration read_calibration(const std::filesystem::path& file, const JudgeTerm& judge,
-                             const OldNameSink& warn) {
-  YamlNode root = read_yaml(file);
-  refuse_other_kinds(root, file, FileKind::calibration);
-  rename_old_keys(root, "calibration", warn);
-  return parse_calibration(root, judge);
+                             const files::OldNameSink& warn) {
+  YamlNode root = files::read_yaml(file);
+  files::refuse_other_kinds(root, file, files::FileKind::calibration);
+  files::rename_old_keys(root, "calibration", warn);
+  return files::parse_calibration(root, judge);
 }
 
 }  // namespace crisp

@@ -14,7 +14,7 @@ namespace crisp {
 namespace {
 
 std::string number(double value, const std::string& what) {
-  if (!std::isfinite(value)) throw internal_error("calibration: " + what + " is not a finite number");
+  if (!std::isfinite(value)) throw data::internal_error("calibration: " + what + " is not a finite number");
   return fmt::format("{}", value);  // the shortest text that reads back as the same double
 }
 
@@ -69,7 +69,7 @@ std::string laser(const LaserCalibration& l) {
 std::string covariance(const Calibration& c) {
   const std::size_t m = c.covariance_order.size();
   if (c.covariance.size() != m * m) {
-    throw internal_error(
+    throw data::internal_error(
         fmt::format("calibration: {} values of covariance for {} parameters", c.covariance.size(), m));
   }
   if (m == 0) return "covariance: {order: [], values: []}\n";

@@ -5,11 +5,11 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Reads a calibration.
 /// @param judge  none: any term with any parameters will do
 /// @throws Errors  all that is wrong, with file:line:column
 Calibration parse_calibration(const YamlNode& root, const JudgeTerm& judge = {});
 
-}  // namespace crisp
+}  // namespace crisp::files

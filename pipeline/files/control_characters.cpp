@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 bool is_control(char c) {
@@ -36,4 +36,4 @@ std::string shown(std::string_view text) {
   return text.size() > kEnough ? to + "…" : to;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 
 /// Position of the first control character, except tabs and line breaks: nobody writes one into a text file,
 /// and it could do anything to a terminal. npos if there is none.
@@ -17,4 +17,4 @@ std::string control_character_in_words(char character);
 /// it goes on.
 std::string shown(std::string_view text);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 /// gzip, of one member or several one after the other, as gzip and pigz write.
@@ -73,4 +73,4 @@ std::unique_ptr<Decompressor> Decompressor::of(std::string_view begin) {
   return nullptr;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 
 /// Why bytes cannot be decompressed, in words.
 struct CompressionFault : std::runtime_error {
@@ -31,4 +31,4 @@ class Decompressor {
   virtual bool may_end() const = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/files/encoder_line_yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 EncoderLine read_encoder_line(const YamlNode& node, std::vector<Error>& errors) {
   constexpr std::int64_t kMostColumns = 64;
@@ -32,4 +32,4 @@ EncoderLine read_encoder_line(const YamlNode& node, std::vector<Error>& errors) 
   return line;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

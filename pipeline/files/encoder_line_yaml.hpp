@@ -7,9 +7,9 @@
 
 #include "pipeline/files/yaml_map.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Reads the `line` of a rig's plate. Mistakes are added to `errors`.
 EncoderLine read_encoder_line(const YamlNode& node, std::vector<Error>& errors);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -7,7 +7,7 @@
 #include <array>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 bool has_any(const YamlNode& map, std::initializer_list<std::string_view> keys) {
@@ -53,4 +53,4 @@ void refuse_other_kinds(const YamlNode& root, const std::filesystem::path& file,
               advice_on(is, requested));
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -5,7 +5,7 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Kind of one of crisp's YAML files.
 enum class FileKind { unknown, pipeline, rig, calibration };
@@ -17,4 +17,4 @@ FileKind kind_of(const YamlNode& root);
 /// @throws Error that names the file's kind, if it is known to be of another kind
 void refuse_other_kinds(const YamlNode& root, const std::filesystem::path& file, FileKind requested);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -9,7 +9,7 @@
 #include "pipeline/files/renamed_names.hpp"
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Findings as JSON for programs: docs/reference/diagnosis-json.md has its schema.
 std::string findings_json(const Findings& findings);
@@ -23,4 +23,4 @@ Findings parse_findings(const YamlNode& root);
 /// @param warn  receives a warning for each such key
 Findings read_findings(const std::filesystem::path& file, const OldNameSink& warn = {});
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -9,7 +9,7 @@
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 /// One map of the file, whose keys are all required.
@@ -245,4 +245,4 @@ Findings read_findings(const std::filesystem::path& file, const OldNameSink& war
   return parse_findings(root);
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

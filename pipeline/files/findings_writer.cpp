@@ -2,7 +2,7 @@
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -133,4 +133,4 @@ std::string findings_json(const Findings& findings) {
   return json_text(all, 2) + "\n";
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

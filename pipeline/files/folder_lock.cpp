@@ -14,7 +14,7 @@
 
 #include "pipeline/files/lock_file.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ std::optional<std::string> FolderLock::holder_of(const fs::path& folder, const F
   return std::nullopt;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

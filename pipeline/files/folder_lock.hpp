@@ -10,7 +10,7 @@
 #include <string_view>
 #include <thread>
 
-namespace crisp {
+namespace crisp::files {
 
 class LockFile;
 
@@ -57,4 +57,4 @@ class FolderLock {
   std::jthread heartbeat_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 
 /// The JSON as text, in one line or indented by so many spaces a level. Names of files and devices may hold
 /// any byte: what is no UTF-8 becomes U+FFFD, where the library alone would throw.
@@ -24,4 +24,4 @@ inline std::string without_space(std::string_view text) {
   return packed;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

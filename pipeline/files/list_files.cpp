@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::files {
 
 std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder) {
   std::error_code failure;
@@ -32,4 +32,4 @@ bool has_extension(const std::filesystem::path& file, const std::vector<std::str
   return std::ranges::find(extensions, own) != extensions.end();
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::files {
 
 /// The files in a folder, but not in folders of its own, by their names.
 /// @throws Error if the folder cannot be read
@@ -15,4 +15,4 @@ std::vector<std::filesystem::path> list_files(const std::filesystem::path& folde
 /// none: tcpdump writes hub.pcap, hub.pcap1 and so on.
 bool has_extension(const std::filesystem::path& file, const std::vector<std::string>& extensions);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -19,7 +19,7 @@
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/utc_now.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ std::vector<FoundLock> living_locks(const fs::path& folder, const std::string& p
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -10,7 +10,7 @@
 #include "pipeline/files/process_identity.hpp"
 #include "pipeline/files/signal_cleanup.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Content of a lock file, for people and for processes.
 struct LockOwner {
@@ -74,4 +74,4 @@ struct FoundLock {
 std::vector<FoundLock> living_locks(const std::filesystem::path& folder, const std::string& prefix,
                                     std::filesystem::file_time_type now, std::chrono::milliseconds lease);
 
-}  // namespace crisp
+}  // namespace crisp::files

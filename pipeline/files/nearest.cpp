@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 /// Levenshtein's distance, with a swap of neighbours counted as one edit (optimal string alignment).
@@ -52,4 +52,4 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return near ? "did you mean '" + *near + "'?" : std::move(otherwise);
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crisp {
+namespace crisp::files {
 
 /// The known name that `name` was probably meant to be: the one of least edit distance, if that is at most a
 /// third of the name's length, rounded up. The first of equals.
@@ -15,4 +15,4 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
 /// "did you mean 'sigma'?" where a known name is near; otherwise `otherwise`.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known, std::string otherwise);
 
-}  // namespace crisp
+}  // namespace crisp::files

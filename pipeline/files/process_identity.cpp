@@ -17,7 +17,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 std::string first_line(const std::filesystem::path& file) {
@@ -107,4 +107,4 @@ Liveness liveness_of_maker(std::string_view name) {
   return fields && machine == machine_in_name(maker) ? liveness_of(maker) : Liveness::unknown;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 
 /// A process, described so that other processes can find out later whether it still runs.
 struct ProcessIdentity {
@@ -43,4 +43,4 @@ std::string unique_name();
 /// invalid name.
 Liveness liveness_of_maker(std::string_view unique_name);
 
-}  // namespace crisp
+}  // namespace crisp::files

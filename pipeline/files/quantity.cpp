@@ -14,7 +14,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 struct Unit {
@@ -36,8 +36,8 @@ constexpr std::array kUnits = {
     Unit{"km", "m", 1e3},
     Unit{"rad", "rad", 1},
     Unit{"mrad", "rad", 1, 1e3},
-    Unit{"deg", "rad", kDegree},
-    Unit{"°", "rad", kDegree},
+    Unit{"deg", "rad", data::kDegree},
+    Unit{"°", "rad", data::kDegree},
     Unit{"turn", "rad", kTurn},
     Unit{"s", "s", 1},
     Unit{"ns", "s", 1, 1e9},
@@ -49,7 +49,7 @@ constexpr std::array kUnits = {
     Unit{"Hz", "Hz", 1},
     Unit{"kHz", "Hz", 1e3},
     Unit{"rad/s", "rad/s", 1},
-    Unit{"deg/s", "rad/s", kDegree},
+    Unit{"deg/s", "rad/s", data::kDegree},
     Unit{"turn/s", "rad/s", kTurn},
     Unit{"rpm", "rad/s", kTurn / 60},
     Unit{"m/s", "m/s", 1},
@@ -167,4 +167,4 @@ std::vector<std::string> units_of(std::string_view unit) {
   return names;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace crisp {
+namespace crisp::files {
 
 /// The fault of a text that is no valid value.
 struct Complaint {
@@ -30,4 +30,4 @@ std::variant<std::int64_t, Complaint> parse_integer(std::string_view text);
 /// The units that are converted to this one: {"mm", "cm", …} for "m". Empty if none are.
 std::vector<std::string> units_of(std::string_view unit);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 using Kind = RenamedName::Kind;
@@ -97,4 +97,4 @@ void rename_old_keys(Json& root, std::string_view owner) {
 template void rename_old_keys(nlohmann::json&, std::string_view);
 template void rename_old_keys(nlohmann::ordered_json&, std::string_view);
 
-}  // namespace crisp
+}  // namespace crisp::files

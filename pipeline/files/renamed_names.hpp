@@ -8,7 +8,7 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// A name that earlier releases had for what users have in their files.
 struct RenamedName {
@@ -41,4 +41,4 @@ void rename_old_keys(YamlNode& root, std::string_view owner, const OldNameSink& 
 template <class Json>
 void rename_old_keys(Json& root, std::string_view owner);
 
-}  // namespace crisp
+}  // namespace crisp::files

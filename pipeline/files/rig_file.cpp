@@ -18,6 +18,9 @@
 namespace crisp {
 namespace {
 
+using files::YamlMap;
+using files::YamlNode;
+
 bool is_ip(const std::string& text) {
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
   return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
@@ -39,7 +42,7 @@ class RigReader {
  public:
   Rig read(const YamlNode& root) {
     YamlMap map(root, "rig", errors_);
-    check_schema(map, 1);
+    files::check_schema(map, 1);
     if (const YamlNode* lasers = map.require("lasers")) read_lasers(*lasers);
     if (const YamlNode* plate = map.require("plate")) read_plate(*plate);
     map.refuse_others();
@@ -68,7 +71,7 @@ class RigReader {
     }
   }
 
-  void read_laser(const YamlEntry& entry) {
+  void read_laser(const files::YamlEntry& entry) {
     YamlMap map(entry.value, "laser '" + entry.key + "'", errors_);
     RigLaser laser;
     laser.name = entry.key;
@@ -79,13 +82,13 @@ class RigReader {
     laser.mount = angle(map, "mount");
     laser.time_offset = bounded(map, "time_offset", "s", 0, 10);
     laser.period_offset = static_cast<int>(map.integer("period_offset", 0, -100, 100));
-    laser.echo =
-        read_choice<EchoChoice>(map, "echo",
-                                {{"first", EchoChoice::first},
-                                 {"last", EchoChoice::last},
-                                 {"strongest", EchoChoice::strongest},
-                                 {"all", EchoChoice::all}},
-                                EchoChoice::first, "choice of echoes", "write first, last, strongest or all");
+    laser.echo = files::read_choice<EchoChoice>(map, "echo",
+                                                {{"first", EchoChoice::first},
+                                                 {"last", EchoChoice::last},
+                                                 {"strongest", EchoChoice::strongest},
+                                                 {"all", EchoChoice::all}},
+                                                EchoChoice::first, "choice of echoes",
+                                                "write first, last, strongest or all");
     laser.nominal.name = laser.name;
     if (const YamlNode* nominal = map.require("nominal")) read_nominal(*nominal, map.what(), laser.nominal);
     map.refuse_others();
@@ -157,7 +160,7 @@ class RigReader {
     rig_.plate.joint = map.text("joint", "");
     rig_.plate.field = map.text("field", "");
     if (map.find("unit")) {
-      rig_.plate.unit = read_choice<AngleUnit>(
+      rig_.plate.unit = files::read_choice<AngleUnit>(
           map, "unit", {{"rad", AngleUnit::rad}, {"deg", AngleUnit::deg}, {"counts", AngleUnit::counts}},
           AngleUnit::rad, "unit of an angle", "write rad, deg or counts");
     }
@@ -169,7 +172,7 @@ class RigReader {
 
   /// Reads where the encoder's counts come from, and in what form.
   void read_encoder(YamlMap& map) {
-    if (const YamlNode* line = map.find("line")) rig_.plate.line = read_encoder_line(*line, errors_);
+    if (const YamlNode* line = map.find("line")) rig_.plate.line = files::read_encoder_line(*line, errors_);
     const std::string laser = map.text("encoder_of", "");
     if (laser.empty()) return;
     const Place& place = map.find("encoder_of")->place;
@@ -184,7 +187,7 @@ class RigReader {
   }
 
   static CountDirection direction(YamlMap& map) {
-    return read_choice<CountDirection>(
+    return files::read_choice<CountDirection>(
         map, "direction",
         {{"counter_clockwise", CountDirection::counter_clockwise},
          {"clockwise", CountDirection::clockwise},
@@ -213,7 +216,7 @@ class RigReader {
     if (std::abs(value) <= kMax) return value;
     const YamlNode& node = *map.find(key);
     std::string wrong;
-    const bool plain = read_number(node, "", wrong).has_value();
+    const bool plain = files::read_number(node, "", wrong).has_value();
     map.fail(node.place, fmt::format("'{}': {}{} is more than a turn", key, node.text, plain ? " rad" : ""),
              plain ? fmt::format("did you mean {}deg?", node.text) : "angles are -360deg to 360deg");
     return 0;
@@ -264,12 +267,20 @@ class RigReader {
 
 }  // namespace
 
+}  // namespace crisp
+
+namespace crisp::files {
+
 Rig parse_rig(const YamlNode& root) { return RigReader().read(root); }
 
+}  // namespace crisp::files
+
+namespace crisp {
+
 Rig read_rig(const std::filesystem::path& file) {
-  const YamlNode root = read_yaml(file);
-  refuse_other_kinds(root, file, FileKind::rig);
-  return parse_rig(root);
+  const YamlNode root = files::read_yaml(file);
+  files::refuse_other_kinds(root, file, files::FileKind::rig);
+  return files::parse_rig(root);
 }
 
 }  // namespace crisp

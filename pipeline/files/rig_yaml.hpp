@@ -5,11 +5,11 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Reads a rig: see configs/rig.yaml for the keys. Values may carry units (`45deg`, `20cm`); plain numbers
 /// are SI and radians.
 /// @throws Errors  all that is wrong, with file:line:column
 Rig parse_rig(const YamlNode& root);
 
-}  // namespace crisp
+}  // namespace crisp::files

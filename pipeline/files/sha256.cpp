@@ -13,7 +13,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 /// A SHA-256 that is fed block by block.
@@ -71,4 +71,4 @@ FileDigest digest_of(const std::filesystem::path& file) {
   return digest;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

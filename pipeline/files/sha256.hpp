@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::files {
 
 /// A file as provenance names it.
 struct FileDigest {
@@ -20,4 +20,4 @@ FileDigest digest_of(const std::filesystem::path& file);
 /// SHA-256 of a text, 64 hexadecimal digits.
 std::string sha256_of(std::string_view text);
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -30,10 +30,14 @@ SignalCleanup::SignalCleanup(std::string file) : file_(std::move(file)) {
 
 SignalCleanup::~SignalCleanup() { replace_once(file_.c_str(), nullptr); }
 
+}  // namespace crisp
+
+namespace crisp::files {
+
 void remove_files_at_signal() noexcept {
   for (const auto& place : files_to_remove) {
     if (const char* file = place.load()) unlink(file);
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -17,7 +17,11 @@ class SignalCleanup {
   std::string file_;
 };
 
+}  // namespace crisp
+
+namespace crisp::files {
+
 /// For a signal handler, before the program ends at once.
 void remove_files_at_signal() noexcept;
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -6,8 +6,8 @@
 
 #include <ctime>
 
-namespace crisp {
+namespace crisp::files {
 
 std::string utc_now() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
 
-}  // namespace crisp
+}  // namespace crisp::files

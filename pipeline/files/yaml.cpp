@@ -19,7 +19,7 @@
 #include "pipeline/files/byte_stream.hpp"
 #include "pipeline/files/control_characters.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 // Within {} and [], YAML ends a plain scalar at a brace, so `{file: ${input}}` would not parse. The braces of
@@ -297,4 +297,4 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

@@ -10,7 +10,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::files {
 
 struct YamlEntry;
 
@@ -58,4 +58,4 @@ YamlNode read_yaml(const std::filesystem::path& file);
 ///         written for 10 s
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit);
 
-}  // namespace crisp
+}  // namespace crisp::files

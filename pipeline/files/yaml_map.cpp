@@ -9,7 +9,7 @@
 #include "pipeline/files/nearest.hpp"
 #include "pipeline/files/quantity.hpp"
 
-namespace crisp {
+namespace crisp::files {
 namespace {
 
 template <class T>
@@ -144,4 +144,4 @@ void check_schema(YamlMap& map, int version) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::files

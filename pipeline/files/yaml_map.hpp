@@ -12,7 +12,7 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::files {
 
 /// Reads a map key by key and collects errors: missing keys, invalid values, and, at the end, unknown keys,
 /// with the nearest known one.
@@ -72,4 +72,4 @@ std::string expected_number(std::string_view unit);
 /// Checks `crisp: 1`, the version of the schema, with which all of crisp's files begin.
 void check_schema(YamlMap& map, int version);
 
-}  // namespace crisp
+}  // namespace crisp::files

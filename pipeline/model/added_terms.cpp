@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 ChainPlace end_of(const LaserChain& chain, Phase phase) {
@@ -41,4 +41,4 @@ void AddedTerms::fill_rows(const Measurements& beams, const PlateTrajectory& pla
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

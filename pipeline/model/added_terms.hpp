@@ -10,7 +10,7 @@
 
 #include "pipeline/model/chain_jacobian.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// A term that a model does not have, at neutral values, which change no beam.
 struct AddedTerm {
@@ -40,4 +40,4 @@ class AddedTerms {
   std::vector<ChainJacobian<1>> of_laser_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::model

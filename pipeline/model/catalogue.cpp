@@ -8,15 +8,15 @@
 namespace crisp {
 
 void register_built_in(TermRegistry& terms) {
-  register_mount_terms(terms);
-  register_mirror_terms(terms);
-  register_encoder_terms(terms);
-  register_plate_terms(terms);
-  register_base_terms(terms);
-  register_timing_terms(terms);
-  register_range_terms(terms);
-  register_range_in_time_terms(terms);
-  register_empirical_terms(terms);
+  model::register_mount_terms(terms);
+  model::register_mirror_terms(terms);
+  model::register_encoder_terms(terms);
+  model::register_plate_terms(terms);
+  model::register_base_terms(terms);
+  model::register_timing_terms(terms);
+  model::register_range_terms(terms);
+  model::register_range_in_time_terms(terms);
+  model::register_empirical_terms(terms);
 }
 
 TermParameters neutral_parameters(const TermInfo& term) {

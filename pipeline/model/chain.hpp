@@ -9,7 +9,7 @@
 
 #include "pipeline/model/laser_pose.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// The plate's angle as the chain queries it: a trajectory, or the simulator's true motion.
 template <class Plate>
@@ -101,4 +101,4 @@ template <class T, PlateMotion Plate, class Visit = VisitsNothing>
   end(Phase::kRange);
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

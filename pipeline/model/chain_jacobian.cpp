@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -285,4 +285,4 @@ auto ChainJacobian<kRows>::take_derivatives(const Pass& pass, std::size_t beam) 
 template class ChainJacobian<1>;
 template class ChainJacobian<3>;
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -12,7 +12,7 @@
 #include "pipeline/model/chain.hpp"
 #include "pipeline/model/traced_runs.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// A term with respect to some of whose parameters is differentiated.
 struct VariedTerm {
@@ -135,4 +135,4 @@ class ChainJacobian {
 extern template class ChainJacobian<1>;
 extern template class ChainJacobian<3>;
 
-}  // namespace crisp
+}  // namespace crisp::model

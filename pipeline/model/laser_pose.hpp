@@ -6,7 +6,7 @@
 
 #include <crisp/beam.hpp>
 
-namespace crisp {
+namespace crisp::model {
 
 /// Pose of one laser on the plate, for equation (2) of Sheehan, Harrison and Newman.
 template <class T>
@@ -54,4 +54,4 @@ void spin(Beam<T>& beam, const T& azimuth) {
   beam.direction = turn(beam.direction);
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

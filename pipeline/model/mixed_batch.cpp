@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/model/mixed_batch.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 MixedBeams::MixedBeams(std::span<const simd::BareLaser> lasers, const PlateTrajectory& plate)
     : lasers_(lasers), plate_(plate) {}
@@ -48,4 +48,4 @@ void MixedBeams::place() {
        .rate = points_[kRate]});
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -10,7 +10,7 @@
 
 #include "pipeline/model/simd_placement.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// A batch of beams of mixed times and lasers, placed together by equation (2) alone: the plate is queried
 /// for each beam, and the rest is vectorized over beams.
@@ -79,4 +79,4 @@ class MixedBeams {
   double points_[kPointFields][kSize];
 };
 
-}  // namespace crisp
+}  // namespace crisp::model

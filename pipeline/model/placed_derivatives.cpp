@@ -42,11 +42,11 @@ Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
   Placed result;
   result.points.resize(3, static_cast<Eigen::Index>(beams.size()));
   result.index.reserve(beams.size());
-  MixedBeams mixed(lasers, plate);
+  model::MixedBeams mixed(lasers, plate);
   for (std::size_t i = 0; i < beams.size();) {
     mixed.clear();
     const std::size_t end = std::min(beams.size(), i + mixed.room());
-    for (std::size_t k = i; k < end; ++k) chain_of(chains, beams, k);
+    for (std::size_t k = i; k < end; ++k) model::chain_of(chains, beams, k);
     mixed.add(beams, i, end);
     i = end;
     mixed.place();
@@ -72,20 +72,20 @@ Placed place_bare(const Measurements& beams, const PlateTrajectory& plate,
 /// The terms of a chain that have free parameters.
 ///
 /// @param slots  of the free parameters, which are numbered by column
-std::vector<VariedTerm> varied_terms(const LaserChain& chain, const std::vector<double>& values,
-                                     const std::vector<std::size_t>& slots) {
-  std::vector<VariedTerm> varied;
+std::vector<model::VariedTerm> varied_terms(const LaserChain& chain, const std::vector<double>& values,
+                                            const std::vector<std::size_t>& slots) {
+  std::vector<model::VariedTerm> varied;
   for (std::size_t p = 0; p < chain.phases.size(); ++p) {
     const auto phase = static_cast<Phase>(p);
     const auto& terms = chain.phases[p];
     for (std::size_t k = 0; k < terms.size(); ++k) {
       const auto count = terms[k].term->info().parameters.size();
       const auto first = values.begin() + static_cast<std::ptrdiff_t>(terms[k].first_slot);
-      VariedTerm own{.term = terms[k].term,
-                     .place = {phase, is_reading(phase) ? terms.size() : k},
-                     .values = {first, first + static_cast<std::ptrdiff_t>(count)},
-                     .parameters = {},
-                     .columns = {}};
+      model::VariedTerm own{.term = terms[k].term,
+                            .place = {phase, model::is_reading(phase) ? terms.size() : k},
+                            .values = {first, first + static_cast<std::ptrdiff_t>(count)},
+                            .parameters = {},
+                            .columns = {}};
       for (std::size_t column = 0; column < slots.size(); ++column) {
         if (slots[column] < terms[k].first_slot || slots[column] >= terms[k].first_slot + count) continue;
         own.parameters.push_back(slots[column] - terms[k].first_slot);
@@ -98,8 +98,8 @@ std::vector<VariedTerm> varied_terms(const LaserChain& chain, const std::vector<
 }
 
 /// The first `count` slots of a chain that are free.
-std::vector<SeededSlot> seeded_slots(const std::vector<std::size_t>& slots, std::size_t count) {
-  std::vector<SeededSlot> seeded;
+std::vector<model::SeededSlot> seeded_slots(const std::vector<std::size_t>& slots, std::size_t count) {
+  std::vector<model::SeededSlot> seeded;
   for (std::size_t column = 0; column < slots.size(); ++column) {
     if (slots[column] < count) seeded.push_back({.slot = slots[column], .column = column});
   }
@@ -107,20 +107,20 @@ std::vector<SeededSlot> seeded_slots(const std::vector<std::size_t>& slots, std:
 }
 
 /// @param slots  of the free parameters, which are numbered by column
-ChainJacobian<3> jacobian_of(const LaserChain& chain, const Eigen::VectorXd& all,
-                             const std::vector<std::size_t>& slots) {
-  const auto values = chain_values(chain, all);
+model::ChainJacobian<3> jacobian_of(const LaserChain& chain, const Eigen::VectorXd& all,
+                                    const std::vector<std::size_t>& slots) {
+  const auto values = model::chain_values(chain, all);
   // Few parameters are differentiated at once.
   if (slots.size() <= static_cast<std::size_t>(Jet::DIMENSION))
     return {chain, values, seeded_slots(slots, chain.slots.size()), {}};
-  return {chain, values, seeded_slots(slots, kBaseParameters), varied_terms(chain, values, slots)};
+  return {chain, values, seeded_slots(slots, model::kBaseParameters), varied_terms(chain, values, slots)};
 }
 
 /// Placed points and their derivatives, where chains have terms.
 Placed place_chains(const Measurements& beams, const PlateTrajectory& plate,
                     const std::vector<LaserChain>& chains, const Eigen::VectorXd& values,
                     const FreeSlots& free, PointDerivatives& derivatives) {
-  std::vector<ChainJacobian<3>> of_laser;
+  std::vector<model::ChainJacobian<3>> of_laser;
   for (std::size_t laser = 0; laser < chains.size(); ++laser)
     of_laser.push_back(jacobian_of(chains[laser], values, free.slots[laser]));
   Placed result;
@@ -128,7 +128,7 @@ Placed place_chains(const Measurements& beams, const PlateTrajectory& plate,
   result.index.reserve(beams.size());
   std::vector<Eigen::Index> first_column(beams.size());
   for (std::size_t i = 0; i < beams.size();) {
-    check_laser(of_laser.size(), beams, i);
+    model::check_laser(of_laser.size(), beams, i);
     i = of_laser[beams.laser[i]].differentiate(
         beams, i, plate, Eigen::Matrix3d::Identity(),
         [&](std::size_t k, const Eigen::Vector3d& end) {
@@ -150,7 +150,7 @@ Placed place_chains(const Measurements& beams, const PlateTrajectory& plate,
 
 Placed SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
                           const std::vector<std::size_t>& free, PointDerivatives& derivatives) const {
-  check_epochs(beams, plate);
+  model::check_epochs(beams, plate);
   const FreeSlots slots = free_slots(fixed_->chains, free);
   derivatives.columns = slots.columns;
   derivatives.stride = 0;

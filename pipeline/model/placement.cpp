@@ -26,7 +26,7 @@ class Gathering {
   }
 
   /// Places the beams of a mixed batch, and empties it.
-  void add(MixedBeams& mixed) {
+  void add(model::MixedBeams& mixed) {
     hand_on();
     mixed.place();
     for (std::size_t k = 0; k < mixed.size();) {
@@ -40,7 +40,7 @@ class Gathering {
   /// Places a run of one laser that starts at `begin` by equation (2) alone. Returns the end of the run.
   std::size_t add_bare(const Measurements& beams, std::size_t begin, const simd::BareLaser& laser,
                        const PlateTrajectory& plate, MirrorAngleCache& known) {
-    const std::size_t end = run_end(beams, begin, kCapacity - size_);
+    const std::size_t end = model::run_end(beams, begin, kCapacity - size_);
     const auto mirrors = known.of(beams.laser[begin], beams.beam[end - 1] + std::size_t{1});
     for (std::size_t i = begin; i < end;) {
       const auto arc = plate.arc(beams.time[i] + laser.eta);
@@ -94,7 +94,7 @@ bool are_dense(const Measurements& beams, std::size_t begin, std::size_t end, co
 std::size_t bare_end(const std::vector<LaserChain>& chains, const Measurements& beams, std::size_t begin,
                      std::size_t limit) {
   std::size_t end = begin;
-  while (end < std::min(limit, beams.size()) && chain_of(chains, beams, end).bare) ++end;
+  while (end < std::min(limit, beams.size()) && model::chain_of(chains, beams, end).bare) ++end;
   return end;
 }
 
@@ -119,26 +119,27 @@ void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate,
 
 void SensorModel::place(const Measurements& beams, const PlateTrajectory& plate, const TakePlaced& take,
                         MirrorAngleCache& known) const {
-  check_epochs(beams, plate);
+  model::check_epochs(beams, plate);
   std::vector<std::vector<double>> parameters(fixed_->chains.size());
   for (std::size_t k = 0; k < fixed_->chains.size(); ++k) {
-    if (!fixed_->chains[k].bare) parameters[k] = chain_values(fixed_->chains[k], values_);
+    if (!fixed_->chains[k].bare) parameters[k] = model::chain_values(fixed_->chains[k], values_);
   }
-  Tracer<double> tracer(beams, plate);
+  model::Tracer<double> tracer(beams, plate);
   Gathering points(take);
-  MixedBeams mixed(*bare_, plate);
+  model::MixedBeams mixed(*bare_, plate);
   for (std::size_t i = 0; i < beams.size();) {
-    const LaserChain& chain = chain_of(fixed_->chains, beams, i);
+    const LaserChain& chain = model::chain_of(fixed_->chains, beams, i);
     const std::size_t laser = beams.laser[i];
     if (chain.bare) {
-      std::size_t end = run_end(beams, i, MixedBeams::kCapacity);
+      std::size_t end = model::run_end(beams, i, model::MixedBeams::kCapacity);
       if (are_dense(beams, i, end, plate)) {
         points.add(mixed);
         i = points.add_bare(beams, i, (*bare_)[laser], plate, known);
         continue;
       }
       // Where a run is shorter than a vector, those after it mostly are, too.
-      if (end - i < simd::kBeyond) end = bare_end(fixed_->chains, beams, end, i + MixedBeams::kCapacity);
+      if (end - i < simd::kBeyond)
+        end = bare_end(fixed_->chains, beams, end, i + model::MixedBeams::kCapacity);
       while (i < end) {
         if (mixed.room() == 0) points.add(mixed);
         const std::size_t last = std::min(end, i + mixed.room());

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace crisp {
+namespace crisp::model {
 
 /// Covariates of a range's noise.
 struct EchoConditions {
@@ -48,4 +48,4 @@ inline double deviation(const ByPart& sizes, const EchoConditions& echo) {
   return std::sqrt(variance);
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

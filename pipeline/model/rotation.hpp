@@ -9,7 +9,7 @@
 
 #include "pipeline/model/chain.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// Sine and cosine of an angle, mostly a small one: then by their series, to within rounding, which takes a
 /// fraction of the time.
@@ -57,4 +57,4 @@ void rotate(Beam<T>& beam, const Rotation<A>& rotation) {
   beam.direction = rotation(beam.direction);
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

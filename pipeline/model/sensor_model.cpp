@@ -17,7 +17,7 @@ void add_terms(LaserChain& chain, const std::vector<TermParameters>& terms, std:
                Scope scope, const TermRegistry& registry) {
   for (const auto& given : terms) {
     auto term = registry.get(given.term);
-    const auto faults = faults_of(given, term->info());
+    const auto faults = model::faults_of(given, term->info());
     if (!faults.empty()) throw Error(faults.front().what, faults.front().advice);
     if (term->info().scope != scope) {
       throw Error("the term " + given.term + " is under the wrong heading of the calibration",
@@ -76,10 +76,10 @@ SensorModel::Fixed SensorModel::resolve(Calibration calibration, const TermRegis
 
     LaserChain& chain = fixed.chains.emplace_back();
     chain.phases.resize(kPhases);
-    for (std::size_t i = 0; i < kBaseParameters; ++i) chain.slots.push_back(next + i);
-    add_terms(chain, laser.terms, next + kBaseParameters, Scope::kLaser, terms);
+    for (std::size_t i = 0; i < model::kBaseParameters; ++i) chain.slots.push_back(next + i);
+    add_terms(chain, laser.terms, next + model::kBaseParameters, Scope::kLaser, terms);
     add_terms(chain, fixed.calibration.plate_terms, first_plate, Scope::kPlate, terms);
-    next += kBaseParameters + count_parameters(laser.terms);
+    next += model::kBaseParameters + count_parameters(laser.terms);
   }
   add_names(fixed.names, "plate", fixed.calibration.plate_terms);
   return fixed;
@@ -91,21 +91,21 @@ SensorModel::SensorModel(Calibration calibration, const TermRegistry& terms)
   for_each_parameter(fixed_->calibration,
                      [&](const Parameter& parameter) { values.push_back(parameter.value); });
   values_ = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(bare_lasers(fixed_->chains, values_));
+  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(model::bare_lasers(fixed_->chains, values_));
 }
 
 std::size_t SensorModel::index(const std::string& name) const {
   const auto found = std::find(names().begin(), names().end(), name);
-  if (found == names().end()) throw internal_error("the sensor model has no parameter " + name);
+  if (found == names().end()) throw data::internal_error("the sensor model has no parameter " + name);
   return static_cast<std::size_t>(found - names().begin());
 }
 
 void SensorModel::set_values(const Eigen::VectorXd& values) {
   if (values.size() != values_.size())
-    throw internal_error(
+    throw data::internal_error(
         fmt::format("the sensor model has {} parameters and got {} values", values_.size(), values.size()));
   values_ = values;
-  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(bare_lasers(fixed_->chains, values_));
+  bare_ = std::make_shared<const std::vector<simd::BareLaser>>(model::bare_lasers(fixed_->chains, values_));
 }
 
 Calibration SensorModel::calibration() const {

@@ -17,7 +17,7 @@ auto find(const std::vector<std::shared_ptr<const ModelTerm>>& terms, const std:
 }
 
 void check(const TermInfo& info) {
-  if (!is_name_in_family(info.name)) {
+  if (!data::is_name_in_family(info.name)) {
     throw Error("'" + info.name + "' is not a model term's name", "write family.name, of a-z, 0-9 and _");
   }
   std::set<std::string> seen;
@@ -27,7 +27,7 @@ void check(const TermInfo& info) {
           "the model term " + info.name + " declares its parameter '" + parameter.name + "' wrongly: " + what,
           "correct the parameter in the term's info()");
     };
-    if (!is_symbol(parameter.name)) fail("names are of letters, digits and _");
+    if (!data::is_symbol(parameter.name)) fail("names are of letters, digits and _");
     if (!seen.insert(parameter.name).second) fail("it is declared twice");
     if (parameter.unit.empty()) fail("it has no unit; that of a plain number is 1");
     if (!(parameter.lower <= parameter.neutral && parameter.neutral <= parameter.upper)) {
@@ -49,7 +49,7 @@ std::shared_ptr<const ModelTerm> TermRegistry::get(const std::string& name) cons
   const auto found = find(terms_, name);
   if (found != terms_.end()) return *found;
   throw Error("there is no term " + name + " of the sensor model",
-              did_you_mean(name, names(), "`crisp effects` lists the effects"));
+              files::did_you_mean(name, names(), "`crisp effects` lists the effects"));
 }
 
 bool TermRegistry::knows(const std::string& name) const { return find(terms_, name) != terms_.end(); }

@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// An estimate may lie on its bound, and the optimiser's a hair beyond.
@@ -81,4 +81,4 @@ JudgeTerm judge_by(const TermRegistry& terms) {
   };
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

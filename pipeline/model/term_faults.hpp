@@ -6,7 +6,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/term.hpp>
 
-namespace crisp {
+namespace crisp::model {
 
 /// Validates a calibration's parameters against the declarations of their term, by name, order and unit: with
 /// any fault, the term would misinterpret the numbers.
@@ -17,4 +17,4 @@ std::vector<TermFault> faults_of(const TermParameters& given, const TermInfo& te
 /// @param terms  is referred to
 JudgeTerm judge_by(const TermRegistry& terms);
 
-}  // namespace crisp
+}  // namespace crisp::model

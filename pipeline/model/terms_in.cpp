@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/model/terms_in.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 std::vector<std::string> terms_in(const Calibration& calibration, const TermRegistry& terms,
                                   const std::function<bool(const TermInfo&)>& is_such) {
@@ -16,4 +16,4 @@ std::vector<std::string> terms_in(const Calibration& calibration, const TermRegi
   return names;
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -8,7 +8,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/term.hpp>
 
-namespace crisp {
+namespace crisp::model {
 
 /// The terms of a calibration that are of some kind, the plate's first: "encoder.eccentricity",
 /// "laser2.mirror.cone".
@@ -18,4 +18,4 @@ namespace crisp {
 std::vector<std::string> terms_in(const Calibration& calibration, const TermRegistry& terms,
                                   const std::function<bool(const TermInfo&)>& is_such = {});
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -16,14 +16,14 @@
 #include "pipeline/model/chain.hpp"
 #include "pipeline/model/simd_placement.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 inline constexpr std::size_t kTracedBlock =
     64;  // beams that go through a chain of terms together: they fit the cache
 
 inline void check_epochs(const Measurements& beams, const PlateTrajectory& plate) {
   if (beams.size() > 0 && !plate.empty() && beams.epoch_ns != plate.epoch_ns()) {
-    throw internal_error(
+    throw data::internal_error(
         "the measurements and the plate's trajectory count their time from different epochs");
   }
 }
@@ -121,4 +121,4 @@ inline std::vector<simd::BareLaser> bare_lasers(const std::vector<LaserChain>& c
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace crisp {
+namespace crisp::pcd {
 namespace {
 
 // The format: a byte below 32 announces that many literal bytes and one more; any other, with one or two
@@ -72,4 +72,4 @@ std::string compress_lzf(std::string_view bytes) {
   return out;
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::pcd {
 
 /// Compresses as LZF does, the method of binary_compressed PCD files; lzf_decompress() of liblzf, and PCL,
 /// read it. The same bytes in give the same bytes out.
@@ -14,4 +14,4 @@ namespace crisp {
 /// @param bytes fewer than 2^32
 std::string compress_lzf(std::string_view bytes);
 
-}  // namespace crisp
+}  // namespace crisp::pcd

@@ -13,7 +13,7 @@
 
 #include "pipeline/files/list_files.hpp"
 
-namespace crisp {
+namespace crisp::pcd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,7 +122,7 @@ void remove_own(const fs::path& file) {
 std::vector<fs::path> remove_numbered_beyond(const fs::path& file, std::size_t last,
                                              const std::string& note) {
   std::vector<fs::path> removed;
-  for (const auto& candidate : list_files(file.has_parent_path() ? file.parent_path() : ".")) {
+  for (const auto& candidate : files::list_files(file.has_parent_path() ? file.parent_path() : ".")) {
     const fs::path named = file.parent_path() / candidate.filename();
     const auto number = number_of(named, file);
     if (!number || *number <= last || !has_number(named, *number, note)) continue;
@@ -195,4 +195,4 @@ void read_parts(const fs::path& file, const std::function<void(const PcdTable&, 
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd

@@ -10,7 +10,7 @@
 
 #include <crisp/pcd_table.hpp>
 
-namespace crisp {
+namespace crisp::pcd {
 
 /// The name of the n-th of the files that a long recording is cut into: cloud.pcd → cloud_0001.pcd.
 std::filesystem::path part_path(const std::filesystem::path& file, std::size_t number);
@@ -68,4 +68,4 @@ class PartsWriter {
 void read_parts(const std::filesystem::path& file,
                 const std::function<void(const PcdTable&, const std::filesystem::path&)>& use);
 
-}  // namespace crisp
+}  // namespace crisp::pcd

@@ -63,8 +63,8 @@ class HeaderReader {
     if (end == std::string_view::npos) fail("the file ends before the line DATA");
     const auto line = file_.substr(header_.data_begin, end - header_.data_begin);
     header_.data_begin = end + 1;
-    if (const auto at = find_control_character(line); at != std::string_view::npos)
-      fail(control_character_in_words(line[at]), at + 1);
+    if (const auto at = files::find_control_character(line); at != std::string_view::npos)
+      fail(files::control_character_in_words(line[at]), at + 1);
     return line;
   }
 
@@ -85,7 +85,7 @@ class HeaderReader {
     if (key == "POINTS") return read_once(points_, words);
     if (key == "DATA") return read_data(words);
     if (key != "SIZE" && key != "TYPE" && key != "COUNT")
-      fail(fmt::format("'{}' is no key of PCD", shown(key)));
+      fail(fmt::format("'{}' is no key of PCD", files::shown(key)));
     if (words.size() != header_.fields.size() + 1) {
       fail(fmt::format("{} has {} values for {} fields", key, words.size() - 1, header_.fields.size()));
     }
@@ -108,7 +108,7 @@ class HeaderReader {
   void read_property(PcdField& field, std::string_view key, std::string_view word) {
     if (key == "TYPE") {
       if (word.size() != 1 || std::string_view("FIUfiu").find(word[0]) == std::string_view::npos)
-        fail(fmt::format("there is no type '{}'", shown(word)));
+        fail(fmt::format("there is no type '{}'", files::shown(word)));
       field.type = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
     } else if (key == "SIZE") {
       field.size = number(word);
@@ -147,7 +147,7 @@ class HeaderReader {
     std::size_t value = 0;
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (code != std::errc() || end != word.data() + word.size()) {
-      fail(fmt::format("'{}' is no whole number", shown(word)));
+      fail(fmt::format("'{}' is no whole number", files::shown(word)));
     }
     return value;
   }

@@ -5,7 +5,7 @@
 
 #include <crisp/pcd_table.hpp>
 
-namespace crisp {
+namespace crisp::pcd {
 
 /// Calls visitor(T{}) with the type T that the field's elements have. The field is one that
 /// parse_pcd_header() accepts.
@@ -22,4 +22,4 @@ void visit_number(const PcdField& field, Visitor visitor) {
   return field.size == 4 ? visitor(float{}) : visitor(double{});
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcd

@@ -107,7 +107,7 @@ class BodyReader {
     std::string columns(header_.points * record_, '\0');
     for_each_value(columns, [&](const PcdField& field, char* to, std::size_t row) {
       if (&field == header_.fields.data()) begin_point(row);
-      visit_number(field, [&]<PcdNumber T>(T) {
+      pcd::visit_number(field, [&]<PcdNumber T>(T) {
         for (std::size_t i = 0; i < field.count; ++i) {
           const T value = number_of<T>(next_word(), row);
           std::memcpy(to + i * sizeof(T), &value, sizeof(T));
@@ -194,7 +194,7 @@ class BodyReader {
       }
     }
     if (code != std::errc() || end != word.data() + word.size() || word.empty()) {
-      fail_in_line(fmt::format("'{}' in place of a number, in point {}", shown(word), row + 1));
+      fail_in_line(fmt::format("'{}' in place of a number, in point {}", files::shown(word), row + 1));
     }
     return value;
   }
@@ -225,7 +225,7 @@ PcdTable parse_pcd(std::string_view bytes, const std::string& name) {
 PcdTable read_pcd(const std::filesystem::path& file) {
   std::error_code missing;  // reported by reading
   const auto size = std::filesystem::file_size(file, missing);
-  return parse_pcd(read_text_file(file, missing ? 0 : size), file.string());
+  return parse_pcd(files::read_text_file(file, missing ? 0 : size), file.string());
 }
 
 }  // namespace crisp

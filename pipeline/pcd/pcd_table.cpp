@@ -35,13 +35,13 @@ T converted(From value, std::string_view field) {
 PcdTable::PcdTable(PcdHeader header, std::string columns, std::size_t surplus)
     : header_(std::move(header)), columns_(std::move(columns)), surplus_(surplus) {
   if (columns_.size() != header_.points * header_.record_size()) {
-    throw internal_error("the columns of a PCD table do not fit its header");
+    throw data::internal_error("the columns of a PCD table do not fit its header");
   }
 }
 
 std::string PcdTable::digest() const {
   constexpr std::size_t kDigits = 16;
-  return sha256_of(columns_).substr(0, kDigits);
+  return files::sha256_of(columns_).substr(0, kDigits);
 }
 
 template <PcdNumber T>
@@ -50,7 +50,7 @@ std::vector<T> PcdTable::column(std::string_view name) const {
   for (const auto& field : header_.fields) {
     if (field.name == name && field.count == 1) {
       std::vector<T> values(rows());
-      visit_number(field, [&]<PcdNumber From>(From) {
+      pcd::visit_number(field, [&]<PcdNumber From>(From) {
         for (std::size_t row = 0; row < rows(); ++row) {
           From value;
           std::memcpy(&value, columns_.data() + begin + row * sizeof(From), sizeof(From));

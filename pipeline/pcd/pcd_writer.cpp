@@ -44,7 +44,7 @@ void append_binary(std::string& to, const Column& column, std::size_t row) {
 
 /// The shortest digits that are read back as the same number.
 void append_ascii(std::string& to, const Column& column, std::size_t row) {
-  visit_number(column.field, [&]<PcdNumber T>(T) {
+  pcd::visit_number(column.field, [&]<PcdNumber T>(T) {
     for (std::size_t i = 0; i < column.field.count; ++i) {
       T value;
       std::memcpy(&value, column.at(row) + i * sizeof(T), sizeof(T));
@@ -75,7 +75,7 @@ Error beyond_limit(const AtomicFile& out) {
 }
 
 void write_compressed(AtomicFile& out, const PcdTable& table) {
-  const std::string compressed = compress_lzf(table.bytes());
+  const std::string compressed = pcd::compress_lzf(table.bytes());
   if (compressed.size() > kMaxCompressed) throw beyond_limit(out);
   for (const std::size_t size : {compressed.size(), table.bytes().size()}) {
     const auto bytes = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(size));

@@ -26,7 +26,7 @@ std::unique_ptr<ItemSource> CaptureGrabber::open() {
   auto reader = std::make_unique<CaptureReader>(file_, rig_, settings_.capture);
   reader_ = reader.get();
   if (settings_.speed == 0) return reader;
-  return std::make_unique<PacedSource>(std::move(reader), settings_.speed);
+  return std::make_unique<pcl_grabber::PacedSource>(std::move(reader), settings_.speed);
 }
 
 void CaptureGrabber::end() {

@@ -96,7 +96,7 @@ LiveCloudGrabber::LiveCloudGrabber(const Rig& rig, Calibration calibration, Live
                                    CloudSettings settings)
     : CloudGrabber(
           "LiveCloudGrabber",
-          [rig, live = std::move(live)] { return std::make_unique<LiveSource>(rig, live); }, rig,
+          [rig, live = std::move(live)] { return std::make_unique<live::LiveSource>(rig, live); }, rig,
           std::move(calibration), std::move(settings)) {}
 
 }  // namespace crisp

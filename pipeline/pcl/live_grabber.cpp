@@ -9,7 +9,7 @@ namespace crisp {
 
 LiveGrabber::LiveGrabber(Rig rig, LiveSettings settings)
     : SourceGrabber("LiveGrabber", [rig = std::move(rig), settings = std::move(settings)] {
-        return std::make_unique<LiveSource>(rig, settings);
+        return std::make_unique<live::LiveSource>(rig, settings);
       }) {}
 
 }  // namespace crisp

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/pcl/paced_source.hpp"
 
-namespace crisp {
+namespace crisp::pcl_grabber {
 
 std::optional<HubItem> PacedSource::next() {
   auto item = source_->next();
@@ -24,4 +24,4 @@ void PacedSource::interrupt() {
   changed_.notify_all();
 }
 
-}  // namespace crisp
+}  // namespace crisp::pcl_grabber

@@ -8,7 +8,7 @@
 
 #include <crisp/hub_item.hpp>
 
-namespace crisp {
+namespace crisp::pcl_grabber {
 
 /// Gives another source's items at the pace of their receipt.
 class PacedSource final : public ItemSource {
@@ -34,4 +34,4 @@ class PacedSource final : public ItemSource {
   bool interrupted_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::pcl_grabber

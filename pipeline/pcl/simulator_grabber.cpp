@@ -14,22 +14,23 @@ namespace {
 /// The hub's simulated data, one item after the other.
 class SimulatedSource final : public ItemSource {
  public:
-  SimulatedSource(const RecordingSettings& settings, const Scene& scene, const TermRegistry& terms)
+  SimulatedSource(const simulate::RecordingSettings& settings, const simulate::Scene& scene,
+                  const TermRegistry& terms)
       : simulator_(settings, scene, terms) {}
 
   std::optional<HubItem> next() override {
     const auto event = simulator_.next();
     if (!event) return {};
     if (const auto* reading = std::get_if<PlateReading>(&*event)) return *reading;
-    return std::make_shared<const Scan>(to_scan(std::get<LaserTelegram>(*event)));
+    return std::make_shared<const Scan>(simulate::to_scan(std::get<simulate::LaserTelegram>(*event)));
   }
 
  private:
-  RecordingSimulator simulator_;
+  simulate::RecordingSimulator simulator_;
 };
 
-RecordingSettings settings_of(const Simulation& simulation) {
-  RecordingSettings settings;
+simulate::RecordingSettings settings_of(const Simulation& simulation) {
+  simulate::RecordingSettings settings;
   settings.scanner.rig = simulation.rig;
   settings.scanner.truth = simulation.truth;
   settings.scanner.duration = simulation.duration;
@@ -38,10 +39,10 @@ RecordingSettings settings_of(const Simulation& simulation) {
 }
 
 std::unique_ptr<ItemSource> open(const Simulation& simulation, double speed, const TermRegistry& terms) {
-  auto source =
-      std::make_unique<SimulatedSource>(settings_of(simulation), built_in_scene(simulation.scene), terms);
+  auto source = std::make_unique<SimulatedSource>(settings_of(simulation),
+                                                  simulate::built_in_scene(simulation.scene), terms);
   if (speed == 0) return source;
-  return std::make_unique<PacedSource>(std::move(source), speed);
+  return std::make_unique<pcl_grabber::PacedSource>(std::move(source), speed);
 }
 
 }  // namespace

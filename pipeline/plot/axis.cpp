@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace crisp {
+namespace crisp::plot {
 namespace {
 
 /// The least and the most of some values.
@@ -124,4 +124,4 @@ PlotAxis vertical_axis(const Plot& plot, double first_pixel, double last_pixel) 
   return {span.least(), span.most(), first_pixel, last_pixel, plot.y_scale};
 }
 
-}  // namespace crisp
+}  // namespace crisp::plot

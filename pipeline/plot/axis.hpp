@@ -5,7 +5,7 @@
 
 #include "pipeline/plot/plot.hpp"
 
-namespace crisp {
+namespace crisp::plot {
 
 /// From a quantity to pixels, with marks at round values.
 class PlotAxis {
@@ -36,4 +36,4 @@ bool is_shown(const Plot& plot, double x, double y);
 /// Half the height of the bar at a point; 0: none.
 double error_at(const PlotSeries& series, std::size_t i);
 
-}  // namespace crisp
+}  // namespace crisp::plot

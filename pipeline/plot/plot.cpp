@@ -9,7 +9,7 @@
 #include "pipeline/plot/axis.hpp"
 #include "pipeline/plot/plot_json.hpp"
 
-namespace crisp {
+namespace crisp::plot {
 namespace {
 
 constexpr double kWidth = 640, kHeight = 400;  // [pixels] of a plot
@@ -217,4 +217,4 @@ std::string as_svg(const std::vector<Plot>& plots) {
   return svg + "</svg>\n";
 }
 
-}  // namespace crisp
+}  // namespace crisp::plot

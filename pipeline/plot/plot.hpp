@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace crisp {
+namespace crisp::plot {
 
 /// One curve, or points where `joined` is false. A curve breaks where x or y is no number.
 struct PlotSeries {
@@ -47,4 +47,4 @@ struct Plot {
 /// element.
 std::string as_svg(const std::vector<Plot>& plots);
 
-}  // namespace crisp
+}  // namespace crisp::plot

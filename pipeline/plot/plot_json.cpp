@@ -9,7 +9,7 @@
 
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::plot {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -45,7 +45,7 @@ std::string plot_json(const Plot& plot) {
   for (const PlotMark& mark : plot.marks) {
     json["marks"].push_back({{"at", number(mark.at)}, {"around", number(mark.around)}, {"name", mark.name}});
   }
-  return json_text(json);
+  return files::json_text(json);
 }
 
-}  // namespace crisp
+}  // namespace crisp::plot

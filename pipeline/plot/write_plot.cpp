@@ -3,11 +3,11 @@
 
 #include <crisp/atomic_file.hpp>
 
-namespace crisp {
+namespace crisp::plot {
 
 void write_plots(const std::filesystem::path& file, const std::vector<Plot>& plots, Context& context) {
   write_file(file, as_svg(plots));
   context.wrote(file);
 }
 
-}  // namespace crisp
+}  // namespace crisp::plot

@@ -8,10 +8,10 @@
 
 #include "pipeline/plot/plot.hpp"
 
-namespace crisp {
+namespace crisp::plot {
 
 /// Writes plots into one SVG picture, and registers the file with the run.
 /// @throws Error that names the file, if it cannot be written
 void write_plots(const std::filesystem::path& file, const std::vector<Plot>& plots, Context& context);
 
-}  // namespace crisp
+}  // namespace crisp::plot

@@ -23,7 +23,7 @@
 #include "pipeline/python/interruptible.hpp"
 #include "pipeline/python/to_python.hpp"
 
-namespace crisp {
+namespace crisp::python {
 namespace {
 
 namespace py = pybind11;
@@ -49,13 +49,13 @@ void load_plugins(const std::vector<fs::path>& files, Registrar& registrar) {
 }
 
 /// Pipelines of this module, wherever it is installed, or of its build tree.
-InstalledPipelines pipelines_of_module() {
+app::InstalledPipelines pipelines_of_module() {
   const fs::path module = py::module_::import("crisp._crisp").attr("__file__").cast<std::string>();
-  return InstalledPipelines::of_folder(module.parent_path(), CRISP_CONFIGS_FROM_MODULE);
+  return app::InstalledPipelines::of_folder(module.parent_path(), CRISP_CONFIGS_FROM_MODULE);
 }
 
-RunRequest run_request(const Request& request) {
-  RunRequest run;
+app::RunRequest run_request(const Request& request) {
+  app::RunRequest run;
   run.file = request.text.empty() ? pipelines_of_module().find(request.pipeline) : request.pipeline;
   run.text = request.text;
   run.arguments = request.arguments;
@@ -64,13 +64,13 @@ RunRequest run_request(const Request& request) {
   return run;
 }
 
-void run_and_keep(RecordedRun& run, Results& results, const std::atomic<bool>& stop) {
-  RunRecord& record = run.record();
+void run_and_keep(app::RecordedRun& run, Results& results, const std::atomic<bool>& stop) {
+  app::RunRecord& record = run.record();
   std::optional<Error> unwritten;
   const auto keep = [&] { run.keep([&](const Error& error) { unwritten = error; }); };
   const auto fail = [&](const std::string& why) {
     record.failure = why;
-    record.exit_status = static_cast<int>(ExitStatus::failed);
+    record.exit_status = static_cast<int>(app::ExitStatus::failed);
     keep();
   };
   try {
@@ -80,10 +80,11 @@ void run_and_keep(RecordedRun& run, Results& results, const std::atomic<bool>& s
     fail("interrupted");
     throw;
   } catch (const Error& error) {
-    fail(error_text(error));
+    fail(app::error_text(error));
     throw;
   }
-  record.exit_status = static_cast<int>(record.is_trusted() ? ExitStatus::done : ExitStatus::not_trusted);
+  record.exit_status =
+      static_cast<int>(record.is_trusted() ? app::ExitStatus::done : app::ExitStatus::not_trusted);
   keep();
   if (unwritten) throw Error(*unwritten);
 }
@@ -91,20 +92,20 @@ void run_and_keep(RecordedRun& run, Results& results, const std::atomic<bool>& s
 py::dict run(const Request& request) {
   Builtin builtin;
   load_plugins(request.plugins, builtin.registrar());
-  const RunRequest requested = run_request(request);
+  const app::RunRequest requested = run_request(request);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::max(1U, requested.threads));
-  RecordedRun recorded(requested, builtin.registrar());
+  app::RecordedRun recorded(requested, builtin.registrar());
   Results results(recorded.pipeline());
   std::atomic<bool> stop = false;
   run_interruptibly([&] { run_and_keep(recorded, results, stop); }, stop);
 
   py::dict dict;
-  dict["summary"] = parsed(json_text(summary_json(recorded.record()), 2));
+  dict["summary"] = parsed(files::json_text(app::summary_json(recorded.record()), 2));
   dict["cloud"] = as_array(results.cloud());
   dict["measurements"] = as_array(results.rows());
   dict["calibration"] = results.calibration() ? parsed(to_yaml(*results.calibration())) : py::none();
-  dict["diagnosis"] = results.findings() ? parsed(findings_json(*results.findings())) : py::none();
+  dict["diagnosis"] = results.findings() ? parsed(files::findings_json(*results.findings())) : py::none();
   dict["epoch_ns"] = results.epoch_ns();
   return dict;
 }
@@ -140,16 +141,16 @@ py::tuple rqe_of_array(const py::array_t<double, py::array::c_style | py::array:
 }
 
 }  // namespace
-}  // namespace crisp
+}  // namespace crisp::python
 
 PYBIND11_MODULE(_crisp, module) {
   namespace py = pybind11;
-  using crisp::Request;
+  using crisp::python::Request;
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       std::rethrow_exception(std::move(thrown));
     } catch (const crisp::Error& error) {
-      PyErr_SetObject(py::module_::import("crisp").attr("Error").ptr(), crisp::as_dict(error).ptr());
+      PyErr_SetObject(py::module_::import("crisp").attr("Error").ptr(), crisp::python::as_dict(error).ptr());
     }
   });
   module.def(
@@ -159,15 +160,15 @@ PYBIND11_MODULE(_crisp, module) {
          const std::optional<std::filesystem::path>& output, const std::optional<std::filesystem::path>& rig,
          const std::vector<std::string>& set, const std::vector<std::filesystem::path>& plugins,
          std::optional<unsigned> threads, std::uint64_t seed) {
-        return crisp::run({.pipeline = pipeline,
-                           .text = text,
-                           .arguments = {.input = input, .output = output, .rig = rig, .set = set},
-                           .plugins = plugins,
-                           .threads = threads,
-                           .seed = seed});
+        return crisp::python::run({.pipeline = pipeline,
+                                   .text = text,
+                                   .arguments = {.input = input, .output = output, .rig = rig, .set = set},
+                                   .plugins = plugins,
+                                   .threads = threads,
+                                   .seed = seed});
       },
       py::arg("pipeline"), py::arg("text"), py::arg("input"), py::arg("output"), py::arg("rig"),
       py::arg("set"), py::arg("plugins"), py::arg("threads"), py::arg("seed"));
-  module.def("rqe", &crisp::rqe_of_array, py::arg("points"), py::arg("sigma"));
+  module.def("rqe", &crisp::python::rqe_of_array, py::arg("points"), py::arg("sigma"));
   module.attr("version") = CRISP_VERSION;
 }

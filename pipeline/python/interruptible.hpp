@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace crisp {
+namespace crisp::python {
 
 /// Does the work in a thread of its own while other threads of Python run. What a signal's handler raises, as
 /// Ctrl-C KeyboardInterrupt, sets `stop`, and is raised once the work has ended.
@@ -37,4 +37,4 @@ void run_interruptibly(Work work, std::atomic<bool>& stop) {
   if (raised) throw py::error_already_set(*raised);
 }
 
-}  // namespace crisp
+}  // namespace crisp::python

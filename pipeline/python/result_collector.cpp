@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace crisp {
+namespace crisp::python {
 namespace {
 
 /// The tag of the last stage that gives this kind; empty if none does.
@@ -69,4 +69,4 @@ void Results::add(const Measurements& measurements) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::python

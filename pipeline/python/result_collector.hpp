@@ -12,7 +12,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/pipeline.hpp>
 
-namespace crisp {
+namespace crisp::python {
 
 /// One measurement as a row of a table.
 struct MeasurementRow {
@@ -54,4 +54,4 @@ class Results {
   std::int64_t epoch_ns_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::python

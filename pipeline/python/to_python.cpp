@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace crisp {
+namespace crisp::python {
 namespace {
 
 namespace py = pybind11;
@@ -109,4 +109,4 @@ py::dict as_dict(const Error& error) {
   return dict;
 }
 
-}  // namespace crisp
+}  // namespace crisp::python

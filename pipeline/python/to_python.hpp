@@ -9,7 +9,7 @@
 
 #include "pipeline/python/result_collector.hpp"
 
-namespace crisp {
+namespace crisp::python {
 
 /// YAML, or JSON, as dicts, lists, numbers and texts.
 pybind11::object parsed(const std::string& text);
@@ -23,4 +23,4 @@ pybind11::object as_array(std::shared_ptr<const std::vector<MeasurementRow>> row
 /// A dict of message, advice, file, line, column; of several errors also `all`, a list of such.
 pybind11::dict as_dict(const Error& error);
 
-}  // namespace crisp
+}  // namespace crisp::python

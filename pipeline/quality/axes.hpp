@@ -6,11 +6,11 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The coordinates of points, axis by axis.
 inline std::array<std::span<const double>, 3> axes(const PointsView& points) {
   return {points.x, points.y, points.z};
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -13,7 +13,7 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace crisp {
+namespace crisp::quality {
 
 namespace detail {
 
@@ -83,4 +83,4 @@ void for_each_index(std::size_t n, const Work& work) {
   for_blocks(n, 1, [&](std::size_t, std::size_t i, std::size_t) { work(i); });
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

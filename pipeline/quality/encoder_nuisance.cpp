@@ -7,7 +7,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_sums.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// The normal matrix of the planes (three unknowns each), the turns and the parameters.
@@ -82,4 +82,4 @@ Eigen::MatrixXd information_with_turns(const Surfels& surfels, const BeamsView& 
   return all.information();
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/surfel_equations.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// An error that beams share: all beams of one moment are turned about the z axis by one angle, with
 /// independent angles for different moments. The residual of the steps of a plate's encoder.
@@ -29,4 +29,4 @@ Eigen::MatrixXd information_with_turns(const Surfels& surfels, const BeamsView& 
                                        const DerivativeRows& derivatives, const SurfelSettings& settings,
                                        const SharedTurns& turns);
 
-}  // namespace crisp
+}  // namespace crisp::quality

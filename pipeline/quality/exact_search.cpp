@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/quality/searches.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 class ExactIndex final : public NeighbourIndex {
@@ -32,4 +32,4 @@ std::unique_ptr<NeighbourIndex> ExactSearch::index(const PointsView& points, dou
   return std::make_unique<ExactIndex>(points, radius);
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

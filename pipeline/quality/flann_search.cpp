@@ -6,7 +6,7 @@
 
 #include "pipeline/quality/searches.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 class FlannIndex final : public NeighbourIndex {
@@ -70,4 +70,4 @@ std::unique_ptr<NeighbourIndex> FlannSearch::index(const PointsView& points, dou
   return std::make_unique<FlannIndex>(points, radius);
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

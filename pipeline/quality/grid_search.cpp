@@ -8,7 +8,7 @@
 #include "pipeline/quality/sum_over_tiles.hpp"
 #include "pipeline/quality/truncation_bound.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 class GridIndex final : public NeighbourIndex {
@@ -85,4 +85,4 @@ GaussianSums GridSearch::over_tiles(const PointsView& points, std::span<const do
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -9,7 +9,7 @@
 #include "pipeline/quality/axes.hpp"
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr std::size_t kSlab = 8;  // planes; a point reaches 6, so only into the next slab
@@ -176,4 +176,4 @@ Lattice::Value Lattice::at(double x, double y, double z) const {
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

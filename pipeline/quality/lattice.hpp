@@ -9,7 +9,7 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// A field on a cubic lattice about some points, between whose nodes quintic B-splines interpolate.
 class Lattice {
@@ -57,4 +57,4 @@ class Lattice {
   std::vector<double> field_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -8,7 +8,7 @@
 
 #include "pipeline/quality/segmentation_cost.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// Candidate starts of the run that ends now. In columns, for vector instructions.
@@ -139,4 +139,4 @@ double price_of(const std::vector<Run>& runs, const std::vector<LineSums>& runni
   return price;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

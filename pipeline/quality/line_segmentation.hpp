@@ -8,7 +8,7 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Sums over points of a plane, from which the line that fits their distances from the origin best follows.
 ///
@@ -56,4 +56,4 @@ std::vector<Run> straight_runs(const std::vector<LineSums>& running, const RunPr
 /// The total cost of runs and outliers [σ²].
 double price_of(const std::vector<Run>& runs, const std::vector<LineSums>& running, const RunPrices& prices);
 
-}  // namespace crisp
+}  // namespace crisp::quality

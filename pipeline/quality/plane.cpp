@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr double kTilt = 0.05;  // [rad] of a view's own plane: what a wrong calibration may do
@@ -91,4 +91,4 @@ double ViewSums::squares_left(const Eigen::Vector3d& fit) const {
 
 double ViewSums::degrees_of_freedom() const { return count_ - damped(matrix()).solve(matrix()).trace(); }
 
-}  // namespace crisp
+}  // namespace crisp::quality

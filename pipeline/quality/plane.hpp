@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Sums over points, from which their plane follows; to be added.
 struct Moments {
@@ -81,4 +81,4 @@ class ViewSums {
   double uu_ = 0, uv_ = 0, vv_ = 0, u_distance_ = 0, v_distance_ = 0, squares_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -18,8 +18,8 @@ bool is_a_position(double value) { return std::abs(value) <= 1e12; }
 
 bool are_positions(std::span<const double> values) {
   constexpr std::size_t kBlock = 65536;  // values
-  std::vector<char> good(blocks_of(values.size(), kBlock));
-  for_blocks(values.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<char> good(quality::blocks_of(values.size(), kBlock));
+  quality::for_blocks(values.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     bool all = true;  // without a branch: by vectors
     for (std::size_t i = begin; i < end; ++i) all &= is_a_position(values[i]);
     good[block] = all ? 1 : 0;
@@ -31,7 +31,7 @@ bool are_positions(std::span<const double> values) {
 
 void Vectors::assign(std::size_t n, double value) {
   const std::array<std::vector<double>*, 3> axes{&x, &y, &z};
-  for_each_array(axes.size(), n, [&](std::size_t axis) { axes[axis]->assign(n, value); });
+  quality::for_each_array(axes.size(), n, [&](std::size_t axis) { axes[axis]->assign(n, value); });
 }
 
 void check(const PointsView& points) {

@@ -12,7 +12,7 @@
 namespace crisp {
 
 Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSettings& settings) {
-  GridSearch search;
+  quality::GridSearch search;
   return rqe(points, weights, settings, search);
 }
 
@@ -37,7 +37,7 @@ Rqe rqe(const PointsView& points, std::span<const double> weights, const RqeSett
   // H = −log E, and xᵢ is in both orders of each of its pairs: ∂H/∂xᵢ = 4 · exponent · pull / kernel.
   const double scale = 4 * kernel.exponent / sums.kernel;
   for (auto* axis : {&result.gradient.x, &result.gradient.y, &result.gradient.z}) {
-    for_blocks(axis->size(), 65536, [&](std::size_t, std::size_t begin, std::size_t end) {
+    quality::for_blocks(axis->size(), 65536, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) (*axis)[i] *= scale;
     });
   }

@@ -46,8 +46,8 @@ GaussianSums Search::sums(const PointsView& points, std::span<const double> weig
   const auto neighbours = index(points, kernel.radius);
   GaussianSums result;
   if (requested.gradient) result.gradient.assign(points.size(), 0);
-  std::vector<BlockSums> blocks(blocks_of(points.size(), kBlock));
-  for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t first, std::size_t last) {
+  std::vector<BlockSums> blocks(quality::blocks_of(points.size(), kBlock));
+  quality::for_blocks(points.size(), kBlock, [&](std::size_t b, std::size_t first, std::size_t last) {
     Neighbours near;
     neighbours->near(first, last, near);
     for (std::size_t i = first; i < last; ++i) {
@@ -61,17 +61,19 @@ GaussianSums Search::sums(const PointsView& points, std::span<const double> weig
     result.kernel += block.kernel;
     result.tested += block.listed;
   }
-  if (requested.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
+  if (requested.error)
+    result.error = quality::truncation_bound(kernel, quality::spatial_order(points, kernel.radius), weights);
   result.pairs = (result.tested - points.size()) / 2;  // each from either end, and each point has itself
   return result;
 }
 
 void register_built_in(SearchRegistry& registry) {
-  registry.add("flann", "a k-d tree (FLANN): the reference", [] { return std::make_unique<FlannSearch>(); });
+  registry.add("flann", "a k-d tree (FLANN): the reference",
+               [] { return std::make_unique<quality::FlannSearch>(); });
   registry.add("grid", "tiles of cells along a Morton curve, vectorized: the fast one",
-               [] { return std::make_unique<GridSearch>(); });
+               [] { return std::make_unique<quality::GridSearch>(); });
   registry.add("exact", "every pair: for tests and few points",
-               [] { return std::make_unique<ExactSearch>(); });
+               [] { return std::make_unique<quality::ExactSearch>(); });
 }
 
 }  // namespace crisp

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/tiles.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// FLANN's k-d tree, exact. The reference that the mission names.
 class FlannSearch final : public Search {
@@ -47,4 +47,4 @@ class GridSearch final : public Search {
   std::optional<Tiles> tiles_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

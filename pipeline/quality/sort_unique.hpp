@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Sorts a list, and leaves out what is in it twice.
 template <class T>
@@ -13,4 +13,4 @@ void sort_once(std::vector<T>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

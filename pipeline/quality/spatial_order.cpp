@@ -14,7 +14,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr int kBits = 21;              // a coordinate's share of a key
@@ -25,7 +25,7 @@ double median_of_a_sample(std::span<const double> values) {
   const std::size_t stride = values.size() / 1024 + 1;
   std::vector<double> sample;
   for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
-  return median_in_place(sample);
+  return statistics::median_in_place(sample);
 }
 
 /// A coordinate's 21 bits, two zeros after each.
@@ -169,4 +169,4 @@ SpatialOrder spatial_order(const PointsView& points, double side) {
   return order;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

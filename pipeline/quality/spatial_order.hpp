@@ -8,7 +8,7 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Cubic cells, numbered along a Morton curve.
 struct CellLattice {
@@ -38,4 +38,4 @@ struct SpatialOrder {
 /// @throws Error for more points than 32 bits can number
 SpatialOrder spatial_order(const PointsView& points, double side);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -10,7 +10,7 @@
 #include "pipeline/quality/lattice.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr double kReach = 9;       // [σ] of the convolution: 2e-9 is left there
@@ -109,4 +109,4 @@ GaussianSums sum_on_lattice(const PointsView& points, std::span<const double> we
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

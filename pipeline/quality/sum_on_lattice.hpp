@@ -8,7 +8,7 @@
 
 #include "pipeline/quality/truncation_bound.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The sums of all pairs at a cost that does not grow with their number, for wide kernels: weights are spread
 /// over a lattice of step 0.4 σ by quintic B-splines, convolved there with what makes a Gaussian of them (an
@@ -27,4 +27,4 @@ inline constexpr double kLatticeError = 2.5e-6;
 /// same points on any machine.
 bool lattice_pays(const PointsView& points, const TruncatedGaussian& kernel);
 
-}  // namespace crisp
+}  // namespace crisp::quality

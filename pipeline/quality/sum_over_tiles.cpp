@@ -9,7 +9,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/tile_sums.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// Positions and weights in the order of the tiles, in single precision and kernel units.
@@ -107,4 +107,4 @@ GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::s
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -9,7 +9,7 @@
 #include "pipeline/quality/tiles.hpp"
 #include "pipeline/quality/truncation_bound.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The sums in single precision, vectorised and in parallel, each pair once for both of its points where
 /// that pays. An offset errs by some 1e-7 of the radius, a pair's kernel by some 1e-6 at the radius and less
@@ -20,4 +20,4 @@ namespace crisp {
 GaussianSums sum_over_tiles(const Tiles& tiles, const PointsView& points, std::span<const double> weights,
                             const TruncatedGaussian& kernel, bool gradient);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -10,7 +10,7 @@
 
 #include "pipeline/quality/surfel_residuals.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// A part of a surfel: what lies beyond a line across it.
@@ -83,4 +83,4 @@ void cut_strange_ends(const Surfel& surfel, Surfels& surfels, const BeamsView& b
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -3,7 +3,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Rejects the ends of a surfel that reaches too far: an end, i.e. the beams beyond a straight line across
 /// it, gets the weight 0 if its mean distance from the plane is beyond chance and beyond surface bumps. An
@@ -18,4 +18,4 @@ namespace crisp {
 void cut_strange_ends(const Surfel& surfel, Surfels& surfels, const BeamsView& beams,
                       const SurfelSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -11,7 +11,7 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a row
@@ -20,7 +20,7 @@ constexpr std::size_t kBatch = 16384;  // beams of surfels that are summed in a 
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.rows() == 0) return b;
   constexpr double kNothing = 1e-10;
-  const SymmetricEigen eigen = eigendecomposition(a);
+  const statistics::SymmetricEigen eigen = statistics::eigendecomposition(a);
   const double least = kNothing * eigen.values.cwiseAbs().maxCoeff();
   const Eigen::VectorXd inverse =
       eigen.values.unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
@@ -67,7 +67,7 @@ void add_without_plane(const SurfelSums& sums, std::span<const SurfelResidual> r
     ++beams;
     to.weight += r.weight;
     to.influence += std::pow(r.weight * r.distance / r.spread, 2);
-    to.stiffness += biweight_psi_derivative(r.weight);
+    to.stiffness += statistics::biweight_psi_derivative(r.weight);
   }
   to.beams += beams;
   to.degrees_of_freedom += static_cast<double>(beams) - 3;
@@ -175,4 +175,4 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
   return total;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -10,7 +10,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// A partition of n beams into blocks: the block of each, numbered from 0. Beams of one block may share an
 /// error, those of different blocks do not.
@@ -82,4 +82,4 @@ NormalEquations normal_equations(const Surfels& surfels, const BeamsView& beams,
                                  const DerivativeRows& derivatives, const SurfelSettings& settings,
                                  std::span<const Division> divisions = {});
 
-}  // namespace crisp
+}  // namespace crisp::quality

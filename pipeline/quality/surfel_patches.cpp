@@ -11,7 +11,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/view_flatness.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr double kThicknessToWidth = 0.1;
@@ -134,4 +134,4 @@ std::vector<std::size_t> CellFinder::around(std::size_t cell) const {
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -11,7 +11,7 @@
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The occupied cells of the smallest size, along the Morton curve: cells of any larger size are runs of
 /// them.
@@ -74,4 +74,4 @@ class CellFinder {
   const SurfelCells& cells_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -11,7 +11,7 @@
 #include "pipeline/quality/view_flatness.hpp"
 #include "pipeline/quality/view_planes.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr double kEdge = 0.95;  // cosine of the angle from which on two surfaces meet at an edge
@@ -192,4 +192,4 @@ std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelC
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -10,7 +10,7 @@
 #include "pipeline/quality/plane.hpp"
 #include "pipeline/quality/surfel_weights.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// @param noise  [m] of the range
@@ -133,4 +133,4 @@ void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& 
                  [&](std::size_t s) { refine(surfels.surfels[s], surfels, beams, settings); });
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// [beams] Number of consecutive beams in a block.
 inline constexpr std::size_t kResidualBlock = 8192;
@@ -45,4 +45,4 @@ void refine_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& 
 /// angle before they are not.
 void refit_all(Surfels& surfels, const BeamsView& beams, const SurfelSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -10,7 +10,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr std::size_t kBeamsAtOnce = 1024;  // beams whose rows are in memory at once
@@ -248,4 +248,4 @@ SurfelSums sums_of(const Surfel& surfel, std::span<const std::uint32_t> members,
   return sum;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -11,7 +11,7 @@
 #include "pipeline/quality/surfel_equations.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Sums over beams by the moment that each is of, for the moments from `first` on.
 struct SumsByMoment {
@@ -53,4 +53,4 @@ struct SurfelSummands {
 SurfelSums sums_of(const Surfel& surfel, std::span<const std::uint32_t> members,
                    std::span<const SurfelResidual> residuals, const SurfelSummands& summands);
 
-}  // namespace crisp
+}  // namespace crisp::quality

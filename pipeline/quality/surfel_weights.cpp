@@ -9,7 +9,7 @@
 #include "pipeline/quality/plane.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// The beams' views, numbered from 0.
@@ -115,14 +115,14 @@ std::vector<double> within_views(const Views& views, const Weighing& of) {
 
 /// Ratio of the residuals' scatter to the expected one; 1 where it is no larger.
 double excess(const std::vector<double>& left) {
-  const auto size = [](double value) { return kMadToSigma * std::abs(value); };
+  const auto size = [](double value) { return statistics::kMadToSigma * std::abs(value); };
   // Most are small enough, as a rule, which is found sooner than the median.
   const auto small = std::ranges::count_if(
       left, [](double value) { return value <= 1; }, size);
   if (static_cast<std::size_t>(small) > left.size() / 2) return 1;
   std::vector<double> sizes(left.size());
   std::ranges::transform(left, sizes.begin(), size);
-  return std::max(1.0, median_in_place(sizes));
+  return std::max(1.0, statistics::median_in_place(sizes));
 }
 
 /// Tukey's biweight; wider where the noise is.
@@ -132,7 +132,7 @@ void weigh_each(double outlier, const Views& views, Weighing& of) {
     const auto left = within_views(views, of);
     const double per_end = 1 / (outlier * excess(left));
     for (std::size_t i = 0; i < of.size(); ++i) {
-      of.weight[i] = of.most[i] * biweight(left[i] * per_end);
+      of.weight[i] = of.most[i] * statistics::biweight(left[i] * per_end);
     }
   }
 }
@@ -215,4 +215,4 @@ void weigh(std::vector<SurfelResidual>& residuals, std::span<const std::uint32_t
   for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i].weight = weighing.weight[i];
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/surfel_residuals.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Sets the weights of a surfel's residuals, of which those that count have the weight 1: by Tukey's biweight
 /// in what is left of each after a plane of its view's own, and to 0 where patches or strips of the surfel
@@ -20,4 +20,4 @@ namespace crisp {
 void weigh(std::vector<SurfelResidual>& residuals, std::span<const std::uint32_t> members,
            std::span<const std::uint32_t> views, double outlier);
 
-}  // namespace crisp
+}  // namespace crisp::quality

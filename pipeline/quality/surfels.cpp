@@ -14,7 +14,7 @@
 #include "pipeline/quality/surfel_patches.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 void check(const BeamsView& beams, const SurfelSettings& settings) {
@@ -164,4 +164,4 @@ void reject_grazed(Surfels& found, const BeamsView& beams) {
                 [&](const Surfel& surfel) { return incidence_of(surfel, found, beams) < kLeast; });
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -9,7 +9,7 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// n beams that met something.
 struct BeamsView {
@@ -88,4 +88,4 @@ void reject_inconsistent(Surfels& found, const BeamsView& beams, const SurfelSet
 /// ranges' noise is next to nothing, so that a thousand of its beams would outweigh all walls.
 void reject_grazed(Surfels& found, const BeamsView& beams);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -9,7 +9,7 @@
 #include "pipeline/quality/axes.hpp"
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr std::size_t kCutBlock = 65536;     // points
@@ -159,4 +159,4 @@ void Tiles::near_below(std::size_t level, std::size_t box, const Query& query) c
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

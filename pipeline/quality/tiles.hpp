@@ -8,7 +8,7 @@
 
 #include <crisp/points.hpp>
 
-namespace crisp {
+namespace crisp::quality {
 
 /// n boxes along the axes [m], as a struct of arrays. An empty one has low = ∞, high = −∞.
 struct Boxes {
@@ -70,4 +70,4 @@ class Tiles {
 /// The squared distance [m²] between two boxes: of any point in one to any in the other, at least.
 double squared_gap(const Boxes& a, std::size_t i, const Boxes& b, std::size_t j);
 
-}  // namespace crisp
+}  // namespace crisp::quality

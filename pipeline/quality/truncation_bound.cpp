@@ -65,6 +65,10 @@ double sum_over_offsets(const TruncatedGaussian& kernel, double side) {
 
 }  // namespace
 
+}  // namespace crisp
+
+namespace crisp::quality {
+
 double truncation_bound(const TruncatedGaussian& kernel, const SpatialOrder& order,
                         std::span<const double> weights) {
   double sum_of_squares = 0;
@@ -79,4 +83,4 @@ double truncation_bound(const TruncatedGaussian& kernel, const SpatialOrder& ord
   return sum_over_offsets(kernel, kernel.radius) * (sum_of_squares + cell * cell);
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

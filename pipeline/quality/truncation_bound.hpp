@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/spatial_order.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// Bound of the truncated part of Σᵢ Σⱼ wᵢ wⱼ G(xᵢ − xⱼ) / G(0), the sum over all pairs.
 ///
@@ -20,4 +20,4 @@ namespace crisp {
 double truncation_bound(const TruncatedGaussian& kernel, const SpatialOrder& order,
                         std::span<const double> weights);
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -6,7 +6,7 @@
 
 #include "pipeline/quality/sort_unique.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 constexpr double kMaxTilt = 0.1;  // [rad] of a view against all: beyond, it sees another side of an edge
@@ -52,4 +52,4 @@ bool ViewFlatness::is_flat(std::span<const std::uint32_t> members, const Plane& 
   return left / degrees_of_freedom <= 1 + settings_.max_excess + 3 * std::sqrt(2 / degrees_of_freedom);
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -9,7 +9,7 @@
 #include "pipeline/quality/plane.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The views of beams, numbered from 0.
 struct ViewNumbers {
@@ -39,4 +39,4 @@ class ViewFlatness {
   std::vector<std::uint32_t> in_use_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

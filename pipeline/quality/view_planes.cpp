@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// Weighted squares of the distances from the view's own plane.
@@ -58,4 +58,4 @@ bool ViewPlanes::continues(const ViewPlanes& other, const Plane& plane, double b
   return worse <= lost + kChance * std::sqrt(2 * lost) + bumps;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/plane.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 /// The plane in which each view by itself sees a piece of a surface.
 class ViewPlanes {
@@ -34,4 +34,4 @@ class ViewPlanes {
   std::vector<OfView> views_;  // ascending
 };
 
-}  // namespace crisp
+}  // namespace crisp::quality

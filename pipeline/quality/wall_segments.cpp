@@ -10,7 +10,7 @@
 
 #include "pipeline/quality/plane.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 namespace {
 
 /// Pieces of one line, in the order of azimuth.
@@ -150,4 +150,4 @@ Surfels wall_lines(const BeamsView& beams, const WallLineSettings& settings) {
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::quality

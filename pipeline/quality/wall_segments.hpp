@@ -6,7 +6,7 @@
 #include "pipeline/quality/line_segmentation.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::quality {
 
 struct WallLineSettings {
   double noise = 0.012;  ///< [m] standard deviation of a range, with what views may disagree by
@@ -27,4 +27,4 @@ struct WallLineSettings {
 /// @throws Error  for points that are no numbers
 Surfels wall_lines(const BeamsView& beams, const WallLineSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::quality

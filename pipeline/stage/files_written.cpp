@@ -8,7 +8,7 @@
 
 #include "pipeline/stage/name_pattern.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::v
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

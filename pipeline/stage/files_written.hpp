@@ -9,7 +9,7 @@
 #include <crisp/error.hpp>
 #include <crisp/pipeline.hpp>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// The record of the whole run, in the output folder.
 inline constexpr const char* kSummary = "summary.json";
@@ -26,4 +26,4 @@ struct FilesOfRun {
 /// file.
 void check_files_written(const Pipeline& pipeline, const FilesOfRun& run, std::vector<Error>& errors);
 
-}  // namespace crisp
+}  // namespace crisp::stage

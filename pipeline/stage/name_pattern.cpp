@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 // No path that a person writes holds these, while * and # are letters like others in it.
@@ -87,4 +87,4 @@ std::string NamePattern::shown() const {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// The name of a file of which not all is known yet: in places stands any text, or any number.
 class NamePattern {
@@ -35,4 +35,4 @@ class NamePattern {
   std::string text_;  ///< a character of its own for each of the two things that are not known
 };
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -82,7 +82,7 @@ std::string number_text(double value, const std::string& unit) {
   std::string plain = fmt::format("{}{}", value, unit == "1" ? "" : unit);
   if (unit != "rad") return plain;
   std::string degrees = fmt::format("{:.10g}deg", value * 180 / std::numbers::pi);
-  const auto back = parse_quantity(degrees, unit);
+  const auto back = files::parse_quantity(degrees, unit);
   const bool same = std::holds_alternative<double>(back) && std::get<double>(back) == value;
   return same && degrees.size() < plain.size() ? degrees : plain;
 }
@@ -102,7 +102,7 @@ std::optional<std::string> complaint_of_text(const Option& option, const std::st
   if (!option.choices.empty() && std::ranges::find(option.choices, text) == option.choices.end()) {
     return fmt::format("'{}' is not one of its names", text);
   }
-  if (!option.ending.empty() && !has_extension(text, {option.ending})) {
+  if (!option.ending.empty() && !files::has_extension(text, {option.ending})) {
     return fmt::format("'{}' is no name of a {} file", text, option.ending);
   }
   return std::nullopt;

@@ -10,8 +10,10 @@
 #include "pipeline/files/quantity.hpp"
 #include "pipeline/files/yaml_map.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
+
+using files::YamlNode;
 
 template <class T>
 std::optional<OptionScalar> boxed(const std::optional<T>& value) {
@@ -23,22 +25,22 @@ std::optional<OptionScalar> read_scalar(const Option& option, const YamlNode& no
                                         const std::filesystem::path& folder, std::string& wrong) {
   switch (option.type) {
     case OptionType::boolean:
-      return boxed(read_boolean(node, wrong));
+      return boxed(files::read_boolean(node, wrong));
     case OptionType::integer:
-      return boxed(read_integer(node, wrong));
+      return boxed(files::read_integer(node, wrong));
     case OptionType::number:
-      return boxed(read_number(node, option.unit == "1" ? "1" : option.unit, wrong));
+      return boxed(files::read_number(node, option.unit == "1" ? "1" : option.unit, wrong));
     case OptionType::text:
     case OptionType::choice:
-      return boxed(read_text(node, wrong));
+      return boxed(files::read_text(node, wrong));
     case OptionType::path:
     case OptionType::groups:  // is no scalar: see Reader
       break;
   }
-  const auto path = read_text(node, wrong);
+  const auto path = files::read_text(node, wrong);
   if (path && path->empty()) wrong = "the path is empty";
   if (!wrong.empty()) return std::nullopt;
-  return OptionScalar(path_of(node, folder).string());
+  return OptionScalar(files::path_of(node, folder).string());
 }
 
 /// An option and a value of it, for people: in the unit in which the value was written.
@@ -54,7 +56,7 @@ AsWritten as_written(const Option& option, const OptionScalar& value, const std:
   const double number = std::strtod(text.c_str(), &end);
   const auto unit = text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str()));
   if (unit == std::string::npos) return written;
-  const auto one = parse_quantity("1" + text.substr(unit), option.unit);
+  const auto one = files::parse_quantity("1" + text.substr(unit), option.unit);
   const auto* size = std::get_if<double>(&one);
   if (size == nullptr) return written;
   written.option.unit = text.substr(unit);
@@ -96,16 +98,16 @@ class Reader {
  private:
   std::optional<OptionValue> read_groups(const YamlNode& node) {
     const std::size_t before = errors_.size();
-    if (node.kind != YamlNode::Kind::map) refuse(node.place, describe(node) + " is no map");
+    if (node.kind != YamlNode::Kind::map) refuse(node.place, files::describe(node) + " is no map");
     OptionGroups groups;
     for (const auto& [name, place, values] : node.entries) {
       OptionGroup& group = groups.emplace_back(OptionGroup{.name = name, .entries = {}, .place = place});
       if (values.kind != YamlNode::Kind::map && values.kind != YamlNode::Kind::null) {
-        refuse(values.place, name + ": " + describe(values) + " is no map");
+        refuse(values.place, name + ": " + files::describe(values) + " is no map");
       }
       for (const auto& [parameter, key, value] : values.entries) {
         std::string wrong;
-        const auto text = read_text(value, wrong);
+        const auto text = files::read_text(value, wrong);
         if (!text) refuse(value.place, fmt::format("{}.{}: {}", name, parameter, wrong));
         group.entries.push_back({.name = parameter, .value = text.value_or(""), .place = value.place});
       }
@@ -125,7 +127,7 @@ class Reader {
       const AsWritten written = as_written(option_, *scalar, node.text);
       const auto wrong_value = complaint_of_one(written.option, written.value);
       refuse(written.option, node.place, wrong_value.value_or("is out of range"),
-             did_you_mean(node.text, option_.choices, {}));
+             files::did_you_mean(node.text, option_.choices, {}));
       return std::nullopt;
     }
     return scalar;
@@ -171,4 +173,4 @@ std::optional<OptionValue> read_option(const Option& option, const YamlNode& nod
   return Reader(option, who, folder, errors).read(node);
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -26,7 +26,7 @@ class Builder {
     check_tag(node, above);
     node.type = run_.registrar->stages().find(spec.stage);
     if (!node.type) {
-      const Error unknown = no_such_stage(spec.stage, run_.registrar->stages());
+      const Error unknown = stage::no_such_stage(spec.stage, run_.registrar->stages());
       fail(spec.place, unknown.message(), unknown.advice());
       return node;
     }
@@ -65,7 +65,7 @@ class Builder {
       const Option* option = node.type->find_option(name);
       if (!option) {
         fail(spec.place, fmt::format("{}: there is no option '{}'", node.tag, name),
-             no_such_option(*node.type, name));
+             stage::no_such_option(*node.type, name));
       } else if (const auto wrong = complaint(*option, value)) {
         fail(spec.place, fmt::format("{}: option '{}' {}", node.tag, name, *wrong),
              "expected is " + expectation(*option));
@@ -104,11 +104,11 @@ Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, st
   Pipeline pipeline;
   Builder builder(run, errors);
   for (const auto& spec : specs) pipeline.nodes.push_back(builder.make(spec, pipeline.nodes));
-  connect(pipeline, specs, run.registrar->stages(), errors);
+  stage::connect(pipeline, specs, run.registrar->stages(), errors);
   for (const auto& node : pipeline.nodes) {
     if (node.type && node.has_valid_options && rig_is_known) builder.check(node);
   }
-  if (errors.empty()) pipeline.warnings = put_too_low(pipeline);
+  if (errors.empty()) pipeline.warnings = stage::put_too_low(pipeline);
   return pipeline;
 }
 

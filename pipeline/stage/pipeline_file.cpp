@@ -23,6 +23,7 @@
 namespace crisp {
 namespace {
 
+using files::YamlNode;
 namespace fs = std::filesystem;
 
 /// Value of ${output} where a pipeline is only validated.
@@ -38,9 +39,9 @@ class PlanReader {
         errors_(errors),
         settings_(arguments.set, errors) {}
 
-  PipelinePlan read(const YamlNode& root) {
-    YamlMap map(root, "pipeline", errors_);
-    check_schema(map, 1);
+  stage::PipelinePlan read(const YamlNode& root) {
+    files::YamlMap map(root, "pipeline", errors_);
+    files::check_schema(map, 1);
     set_arguments();
     if (const YamlNode* vars = map.find("vars")) read_variables(*vars);
     read_rig_of(map.find("rig"));
@@ -81,7 +82,7 @@ class PlanReader {
   }
 
   void read_variables(const YamlNode& node) {
-    YamlMap map(node, "vars", errors_);
+    files::YamlMap map(node, "vars", errors_);
     for (const auto& [name, place, value] : node.entries) {
       if (name == "input" || name == "output") {
         map.fail(place, "'" + name + "' is set by the command line", "choose another name");
@@ -104,10 +105,10 @@ class PlanReader {
     variables_.substitute(rig, errors_);
     plan_.rig_is_known = errors_.size() == before;
     if (rig.kind == YamlNode::Kind::scalar) {
-      if (plan_.rig_is_known) use_rig(path_of(rig, folder_), rig.place);
+      if (plan_.rig_is_known) use_rig(files::path_of(rig, folder_), rig.place);
       return;
     }
-    take_rig([&] { plan_.rig = parse_rig(rig); }, rig.place);
+    take_rig([&] { plan_.rig = files::parse_rig(rig); }, rig.place);
   }
 
   void use_rig(const fs::path& file, const Place& place) {
@@ -126,7 +127,7 @@ class PlanReader {
 
   void read_stages(const YamlNode& list) {
     if (list.kind != YamlNode::Kind::sequence) {
-      errors_.emplace_back("pipeline: " + describe(list) + " is not a list of stages",
+      errors_.emplace_back("pipeline: " + files::describe(list) + " is not a list of stages",
                            "begin each with '- stage:'", list.place);
     } else if (list.items.empty()) {
       errors_.emplace_back("pipeline: there is no stage in it", "add `- stage: NAME`", list.place);
@@ -142,19 +143,20 @@ class PlanReader {
 
   void read_stage(const YamlNode& node) {
     if (node.kind == YamlNode::Kind::scalar) {
-      errors_.emplace_back("stage: " + describe(node) + " is not a map",
+      errors_.emplace_back("stage: " + files::describe(node) + " is not a map",
                            "write `- stage: " + without_key(node.text) + "`", node.place);
       return;
     }
-    YamlMap map(node, "stage", errors_);
+    files::YamlMap map(node, "stage", errors_);
     StageSpec spec;
     spec.place = node.place;
     const YamlNode* name = map.require("stage");
     if (name) spec.place = name->place;
-    spec.stage = current(RenamedName::Kind::stage, "", map.text("stage", ""), spec.place);
+    spec.stage = current(files::RenamedName::Kind::stage, "", map.text("stage", ""), spec.place);
     spec.tag = map.text("tag", "");
     if (const YamlNode* tag = map.find("tag"); tag && !is_tag(spec.tag)) {
-      map.fail(tag->place, describe(*tag) + " is not a tag", "tags are of letters, digits, '_', '-' and '.'");
+      map.fail(tag->place, files::describe(*tag) + " is not a tag",
+               "tags are of letters, digits, '_', '-' and '.'");
     }
     if (const YamlNode* inputs = map.find("inputs")) spec.inputs = read_inputs(*inputs, map);
     if (const YamlNode* with = map.find("with")) read_options(*with, spec);
@@ -162,9 +164,9 @@ class PlanReader {
     if (!spec.stage.empty()) plan_.stages.push_back(std::move(spec));
   }
 
-  std::string current(RenamedName::Kind kind, std::string_view owner, const std::string& name,
+  std::string current(files::RenamedName::Kind kind, std::string_view owner, const std::string& name,
                       const Place& place) {
-    return accept_old_name(kind, owner, name, place, plan_.warnings);
+    return stage::accept_old_name(kind, owner, name, place, plan_.warnings);
   }
 
   /// The stage's name where the colon behind `stage` is missing, or the blank behind that.
@@ -180,18 +182,18 @@ class PlanReader {
     return !tag.empty() && std::all_of(tag.begin(), tag.end(), allowed);
   }
 
-  std::vector<TagReference> read_inputs(const YamlNode& node, YamlMap& map) {
+  std::vector<TagReference> read_inputs(const YamlNode& node, files::YamlMap& map) {
     std::vector<TagReference> inputs;
     const auto add = [&](const std::string& tag, const Place& place) {
-      inputs.push_back({current(RenamedName::Kind::stage, "", tag, place), place});
+      inputs.push_back({current(files::RenamedName::Kind::stage, "", tag, place), place});
     };
     if (node.kind == YamlNode::Kind::scalar)
       add(node.text, node.place);
     else if (node.kind != YamlNode::Kind::sequence)
-      map.fail(node.place, describe(node) + " is not a list of tags", "write inputs: [TAG, TAG]");
+      map.fail(node.place, files::describe(node) + " is not a list of tags", "write inputs: [TAG, TAG]");
     for (const auto& item : node.items) {
       std::string wrong;
-      if (auto tag = read_text(item, wrong))
+      if (auto tag = files::read_text(item, wrong))
         add(*tag, item.place);
       else
         map.fail(item.place, "inputs: " + wrong, "expected is the tag of a stage");
@@ -202,14 +204,15 @@ class PlanReader {
   void read_options(const YamlNode& node, StageSpec& spec) {
     if (node.kind == YamlNode::Kind::null) return;
     const std::string who = spec.tag.empty() ? spec.stage : spec.tag;
-    YamlMap map(node, who, errors_);
+    files::YamlMap map(node, who, errors_);
     const StageType* type = stages_.find(spec.stage);
     if (!type) return;  // reported when the pipeline is built
     for (const auto& entry : node.entries) {
-      const std::string name = current(RenamedName::Kind::option, type->name, entry.key, entry.place);
+      const std::string name = current(files::RenamedName::Kind::option, type->name, entry.key, entry.place);
       const Option* option = type->find_option(name);
       if (!option) {
-        map.fail(entry.place, "there is no option '" + entry.key + "'", no_such_option(*type, entry.key));
+        map.fail(entry.place, "there is no option '" + entry.key + "'",
+                 stage::no_such_option(*type, entry.key));
         continue;
       }
       spec.places[option->name] = entry.value.place;
@@ -217,7 +220,7 @@ class PlanReader {
       const std::size_t before = errors_.size();
       variables_.substitute(value, errors_);
       std::optional<OptionValue> read;
-      if (errors_.size() == before) read = read_option(*option, value, who, folder_, errors_);
+      if (errors_.size() == before) read = stage::read_option(*option, value, who, folder_, errors_);
       if (read)
         spec.with[option->name] = std::move(*read);
       else
@@ -229,9 +232,9 @@ class PlanReader {
   const PipelineArguments& arguments_;
   const StageRegistry& stages_;
   std::vector<Error>& errors_;
-  Settings settings_;
-  Variables variables_;
-  PipelinePlan plan_;
+  stage::Settings settings_;
+  stage::Variables variables_;
+  stage::PipelinePlan plan_;
 };
 
 /// Errors of one file in the order of its lines; files in the order of their first error.
@@ -260,6 +263,10 @@ std::vector<std::string> endings_of_captures(const Registrar& registrar) {
 
 }  // namespace
 
+}  // namespace crisp
+
+namespace crisp::stage {
+
 PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const PipelineArguments& arguments,
                         const StageRegistry& stages, std::vector<Error>& errors) {
   return PlanReader(folder, arguments, stages, errors).read(root);
@@ -267,7 +274,7 @@ PipelinePlan parse_plan(const YamlNode& root, const fs::path& folder, const Pipe
 
 LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const PipelineArguments& arguments,
                              RunSettings& run) {
-  refuse_other_kinds(root, file, FileKind::pipeline);
+  files::refuse_other_kinds(root, file, files::FileKind::pipeline);
   std::vector<Error> errors;
   const fs::path folder = fs::absolute(file).parent_path();
   PipelinePlan plan = parse_plan(root, folder, arguments, run.registrar->stages(), errors);
@@ -285,13 +292,17 @@ LoadedPipeline load_pipeline(const YamlNode& root, const fs::path& file, const P
   return {std::move(pipeline), file, std::move(plan.rig_file)};
 }
 
+}  // namespace crisp::stage
+
+namespace crisp {
+
 LoadedPipeline load_pipeline(const fs::path& file, const PipelineArguments& arguments, RunSettings& run) {
-  return load_pipeline(read_yaml(file), file, arguments, run);
+  return stage::load_pipeline(files::read_yaml(file), file, arguments, run);
 }
 
 LoadedPipeline load_pipeline(std::string_view text, const fs::path& name, const PipelineArguments& arguments,
                              RunSettings& run) {
-  return load_pipeline(parse_yaml(text, name.string()), name, arguments, run);
+  return stage::load_pipeline(files::parse_yaml(text, name.string()), name, arguments, run);
 }
 
 }  // namespace crisp

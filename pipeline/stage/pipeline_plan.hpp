@@ -8,7 +8,7 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 
 /// A pipeline as its file describes it.
 struct PipelinePlan {
@@ -21,12 +21,12 @@ struct PipelinePlan {
 
 /// Reads a pipeline's YAML (docs/reference/pipelines.md), the rig that it names included. Adds all mistakes
 /// to `errors`; the plan is of use only to find further ones if there are any.
-PipelinePlan parse_plan(const YamlNode& root, const std::filesystem::path& folder,
+PipelinePlan parse_plan(const files::YamlNode& root, const std::filesystem::path& folder,
                         const PipelineArguments& arguments, const StageRegistry& stages,
                         std::vector<Error>& errors);
 
 /// load_pipeline() of a file that was read already.
-LoadedPipeline load_pipeline(const YamlNode& root, const std::filesystem::path& file,
+LoadedPipeline load_pipeline(const files::YamlNode& root, const std::filesystem::path& file,
                              const PipelineArguments& arguments, RunSettings& run);
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -16,7 +16,7 @@
 #include <system_error>
 #include <vector>
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ std::string exposure_of(const fs::path& file) {
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

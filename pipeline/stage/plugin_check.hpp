@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// Why a file is no valid shared object of this machine, by its kind and its ELF headers: it is a pipe or a
 /// device, it is of another machine, it is truncated (by an interrupted copy, for example), or its headers
@@ -24,4 +24,4 @@ std::string crash_of(const std::function<void()>& work);
 /// otherwise.
 std::string exposure_of(const std::filesystem::path& file);
 
-}  // namespace crisp
+}  // namespace crisp::stage

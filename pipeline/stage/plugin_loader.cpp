@@ -95,9 +95,9 @@ const PluginDescriptor* open_sound_plugin(const fs::path& file, std::string& ref
 /// The same of any file, be it damaged: it is loaded, and has registered what it brings, in a process of its
 /// own first.
 const PluginDescriptor* open_plugin(const fs::path& file, Registrar& registrar, std::string& refusal) {
-  refusal = fault_of_object(file);
+  refusal = stage::fault_of_object(file);
   if (!refusal.empty()) return nullptr;
-  const std::string crash = crash_of([&] {
+  const std::string crash = stage::crash_of([&] {
     std::string ignored;
     const auto* descriptor = open_sound_plugin(file, ignored);
     if (!descriptor || length_of_texts(*descriptor) == 0) return;
@@ -133,7 +133,7 @@ void PluginLoader::load_file(const fs::path& file) {
     record.name = descriptor->name;
     record.version = descriptor->version;
     judge_name(record);
-    if (record.is_loaded()) record.warning = exposure_of(file);
+    if (record.is_loaded()) record.warning = stage::exposure_of(file);
     if (record.is_loaded()) register_all(record, *descriptor);
   }
   tried_.push_back(std::move(record));

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 struct OptionRow {
@@ -117,4 +117,4 @@ nlohmann::ordered_json effective_options(const PipelineNode& node) {
   return options;
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -7,7 +7,7 @@
 #include <crisp/pipeline.hpp>
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// Full description of a stage, for a terminal.
 std::string stage_text(const StageType& type);
@@ -27,4 +27,4 @@ nlohmann::json to_json(const OptionValue& value);
 /// The effective options of a stage: all of them, with the values that it runs with, in SI.
 nlohmann::ordered_json effective_options(const PipelineNode& node);
 
-}  // namespace crisp
+}  // namespace crisp::stage

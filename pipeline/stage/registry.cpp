@@ -21,7 +21,7 @@ void check_options(const StageType& type) {
       throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what,
                   "correct the option in the stage's describe()");
     };
-    if (!is_plain_name(option.name)) fail("names are of a-z, 0-9 and _");
+    if (!data::is_plain_name(option.name)) fail("names are of a-z, 0-9 and _");
     if (!seen.insert(option.name).second) fail("it is declared twice");
     if (option.help.empty()) fail("it has no help");
     if (option.type == OptionType::choice && option.choices.empty()) fail("an enumeration needs choices()");
@@ -65,7 +65,7 @@ bool StageType::gives(const Kind& kind) const {
 }
 
 void StageRegistry::add(StageType type) {
-  if (!is_name_in_family(type.name)) {
+  if (!data::is_name_in_family(type.name)) {
     throw Error("'" + type.name + "' is not a stage's name", "write family.name, of a-z, 0-9 and _");
   }
   if (type.summary.empty())

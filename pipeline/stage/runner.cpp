@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using stage::StageWorker;
+
 class Runner {
  public:
   Runner(Pipeline& pipeline, const RunSettings& run, const RunHooks& hooks)
@@ -79,7 +81,7 @@ class Runner {
   }
 
   std::vector<NodeResult> results() {
-    resolve_caveats(workers_);
+    stage::resolve_caveats(workers_);
     std::vector<NodeResult> list;
     for (auto& worker : workers_) list.push_back(worker.take_result());
     return list;
@@ -92,7 +94,7 @@ class Runner {
     worker.context.emplace(run_, worker.result.report,
                            !ends_gently_ || node.type->endless ? hooks_.stop : nullptr, progress_of(worker));
     worker.context->watch(status_of(worker), &abandoned_);
-    worker.context->set_caveats_above([this, index] { return caveats_above(workers_, index); });
+    worker.context->set_caveats_above([this, index] { return stage::caveats_above(workers_, index); });
     for (std::size_t i = 0; i < node.type->inputs.size(); ++i) {
       for (const auto feeder : node.feeders[i])
         workers_[feeder].edges.push_back({node.type->inputs[i].kind, index, i});
@@ -151,7 +153,7 @@ class Runner {
     if (!workers_[index].waiting.empty()) throw workers_[index].missing_input();
     call(index, [&](StageWorker& w) {
       w.node->stage->finish(*w.out, *w.context);
-      refuse_overwritten(workers_, index);
+      stage::refuse_overwritten(workers_, index);
     });
     for (const auto& edge : workers_[index].edges) {
       StageWorker& fed = workers_[edge.to];
@@ -181,7 +183,7 @@ class Runner {
       if (waits) {  // the stopwatch is for what takes turns
         body(worker);
       } else {
-        const Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
+        const stage::Stopwatch::Turn turn(stopwatch_, worker.result.seconds);
         body(worker);
       }
     } catch (const Interrupted&) {
@@ -192,7 +194,7 @@ class Runner {
       const Place& place = error.place().file.empty() ? worker.node->place : error.place();
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), place);
     } catch (const std::exception& thrown) {
-      const Error error = error_of(thrown);
+      const Error error = data::error_of(thrown);
       throw Reported(worker.node->tag + ": " + error.message(), error.advice(), worker.node->place);
     } catch (...) {
       throw Reported(worker.node->tag + ": it threw something that is no std::exception",
@@ -238,9 +240,9 @@ class Runner {
 
   const RunSettings& run_;
   const RunHooks& hooks_;
-  StageWorkers workers_;
+  stage::StageWorkers workers_;
   bool ends_gently_ = false;
-  Stopwatch stopwatch_;
+  stage::Stopwatch stopwatch_;
   std::atomic<bool> together_ = false;   ///< several sources are being pulled
   std::atomic<bool> abandoned_ = false;  ///< one of them failed
   std::mutex turn_;                      ///< of the source that gives

@@ -7,7 +7,7 @@
 #include "pipeline/files/quantity.hpp"
 #include "pipeline/stage/reference.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -20,7 +20,7 @@ Json number_schema(const Option& option) {
   if (std::isfinite(option.min) && std::abs(option.min) < 9e18) number["minimum"] = option.min;
   if (std::isfinite(option.max) && std::abs(option.max) < 9e18) number["maximum"] = option.max;
   Json any = Json::array({number});
-  const auto units = units_of(option.unit);
+  const auto units = files::units_of(option.unit);
   if (!units.empty()) {
     any.push_back(
         {{"type", "string"},
@@ -104,4 +104,4 @@ Json pipeline_schema(const StageRegistry& stages) {
           {"required", Json::array({"crisp", "pipeline"})}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -8,8 +8,10 @@
 #include "pipeline/stage/option_yaml.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
+
+using files::YamlNode;
 
 /// A place that names the setting, without line and column.
 Place place_of(const std::string& text) { return {"--set " + text, 0, 0}; }
@@ -28,7 +30,7 @@ void comes_from_command_line(YamlNode& node, const Place& place) {
 YamlNode parse_value(const std::string& value, const std::string& text, std::vector<Error>& errors) {
   YamlNode node;
   try {
-    node = parse_yaml(value, {});
+    node = files::parse_yaml(value, {});
   } catch (const Error& error) {
     errors.emplace_back(error.message(), error.advice(), place_of(text));
   }
@@ -45,7 +47,7 @@ std::string meant(const std::string& name, const std::vector<StageSpec>& specs, 
     const StageType* type = stages.find(spec.stage);
     if (type && type->find_option(name)) return "did you mean '" + spec.tag + "." + name + "'?";
   }
-  return did_you_mean(name, tags, {});
+  return files::did_you_mean(name, tags, {});
 }
 
 }  // namespace
@@ -53,11 +55,12 @@ std::string meant(const std::string& name, const std::vector<StageSpec>& specs, 
 Settings::Settings(const std::vector<std::string>& texts, std::vector<Error>& errors) {
   for (const auto& text : texts) {
     const auto equals = text.find('=');
-    const auto control = find_control_character(text);
+    const auto control = files::find_control_character(text);
     const auto wrong = std::min(control, text.find('\n'));
     if (wrong != std::string::npos) {
-      errors.emplace_back("a setting is one line of text, but " + control_character_in_words(text[wrong]),
-                          "write it in one line, without that character", place_of(shown(text)));
+      errors.emplace_back(
+          "a setting is one line of text, but " + files::control_character_in_words(text[wrong]),
+          "write it in one line, without that character", place_of(files::shown(text)));
     } else if (equals == std::string::npos || equals == 0) {
       errors.emplace_back("a setting needs a name and a value", "write --set tag.option=value",
                           place_of(text));
@@ -88,11 +91,11 @@ void Settings::apply(std::vector<StageSpec>& specs, const StageRegistry& stages,
 void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
                      std::vector<Error>& errors, std::vector<PipelineWarning>& warnings) {
   const Place place = place_of(setting.text);
-  const auto current = [&](RenamedName::Kind kind, std::string_view owner, const std::string& given) {
+  const auto current = [&](files::RenamedName::Kind kind, std::string_view owner, const std::string& given) {
     return accept_old_name(kind, owner, given, place, warnings);
   };
   const auto dot = setting.target.rfind('.');
-  const std::string tag = current(RenamedName::Kind::stage, "", setting.target.substr(0, dot));
+  const std::string tag = current(files::RenamedName::Kind::stage, "", setting.target.substr(0, dot));
   const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.tag == tag; });
   if (dot == std::string::npos || spec == specs.end()) {
     const std::string what = dot == std::string::npos ? "variable" : "stage with the tag";
@@ -101,7 +104,8 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
   }
   const StageType* type = stages.find(spec->stage);
   if (!type) return;  // reported when the pipeline is built
-  const std::string name = current(RenamedName::Kind::option, type->name, setting.target.substr(dot + 1));
+  const std::string name =
+      current(files::RenamedName::Kind::option, type->name, setting.target.substr(dot + 1));
   const Option* option = type->find_option(name);
   if (!option) {
     errors.emplace_back(tag + ": there is no option '" + name + "'", no_such_option(*type, name), place);
@@ -128,4 +132,4 @@ void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const Stag
     spec->refused.insert(name);
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

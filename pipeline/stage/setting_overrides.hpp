@@ -9,7 +9,7 @@
 
 #include "pipeline/files/yaml.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 
 /// The settings of a command line, `tag.option=value` and `variable=value`, which go before those of the
 /// file.
@@ -18,7 +18,7 @@ class Settings {
   Settings(const std::vector<std::string>& texts, std::vector<Error>& errors);
 
   /// The value of a variable, if one is set; it counts as used from then on.
-  std::optional<YamlNode> take_variable(const std::string& name, std::vector<Error>& errors);
+  std::optional<files::YamlNode> take_variable(const std::string& name, std::vector<Error>& errors);
 
   /// Sets the options that are named, and adds an error for each setting that nothing has a use for. Paths
   /// are relative to the current folder.
@@ -39,4 +39,4 @@ class Settings {
   std::vector<Setting> settings_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::stage

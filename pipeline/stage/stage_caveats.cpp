@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 /// Stages dominated by the stage `by` for this kind: every path of their items passes through it.
@@ -66,4 +66,4 @@ std::vector<std::string> caveats_above(const StageWorkers& workers, std::size_t 
   return caveats;
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 void add_items(const Kind& kind, std::uint64_t n, std::map<std::string, std::uint64_t>& items) {
@@ -71,4 +71,4 @@ void refuse_overwritten(const StageWorkers& workers, std::size_t index) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -9,7 +9,7 @@
 
 #include <crisp/runner.hpp>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// One stage at work: its inputs' latest items, and what waits for those that are not there yet.
 struct StageWorker {
@@ -54,4 +54,4 @@ using StageWorkers = std::deque<StageWorker>;
 /// @throws Error  if the stage at `index` wrote a file of another one
 void refuse_overwritten(const StageWorkers& workers, std::size_t index);
 
-}  // namespace crisp
+}  // namespace crisp::stage

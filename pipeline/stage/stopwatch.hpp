@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// Measures each stage's own time: a stage's clock stands while the stages that it feeds are at work.
 class Stopwatch {
@@ -36,4 +36,4 @@ class Stopwatch {
   Clock::time_point since_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::stage

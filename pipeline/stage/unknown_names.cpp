@@ -6,7 +6,7 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 /// The stages of whose names `fits` likes the part behind the dot: 'did you mean' them; empty if there is
@@ -36,22 +36,22 @@ std::string meant_without_family(std::string_view name, const StageRegistry& sta
 
 Error no_such_stage(const std::string& name, const StageRegistry& stages) {
   auto meant = meant_without_family(name, stages);
-  if (meant.empty()) meant = did_you_mean(name, stages.names(), "crisp stages lists them;");
+  if (meant.empty()) meant = files::did_you_mean(name, stages.names(), "crisp stages lists them;");
   return Error("there is no stage '" + name + "'", meant + " load a plugin's with --plugin FILE");
 }
 
 std::string no_such_option(const StageType& type, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& option : type.options) known.push_back(option.name);
-  return did_you_mean(name, known,
-                      known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
+  return files::did_you_mean(name, known,
+                             known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
 }
 
-std::string accept_old_name(RenamedName::Kind kind, std::string_view owner, const std::string& name,
+std::string accept_old_name(files::RenamedName::Kind kind, std::string_view owner, const std::string& name,
                             const Place& place, std::vector<PipelineWarning>& warnings) {
-  std::string today = current_name(kind, owner, name);
-  if (today != name) warnings.push_back({old_name_warning(name, today).what(), place});
+  std::string today = files::current_name(kind, owner, name);
+  if (today != name) warnings.push_back({files::old_name_warning(name, today).what(), place});
   return today;
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -10,7 +10,7 @@
 
 #include "pipeline/files/renamed_names.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 
 /// The error for an unknown stage, with the nearest names, and how to load a plugin's stages.
 Error no_such_stage(const std::string& name, const StageRegistry& stages);
@@ -19,7 +19,7 @@ Error no_such_stage(const std::string& name, const StageRegistry& stages);
 std::string no_such_option(const StageType& type, const std::string& name);
 
 /// Today's name of a stage or an option. A name of an earlier release adds a warning at its place.
-std::string accept_old_name(RenamedName::Kind kind, std::string_view owner, const std::string& name,
+std::string accept_old_name(files::RenamedName::Kind kind, std::string_view owner, const std::string& name,
                             const Place& place, std::vector<PipelineWarning>& warnings);
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -9,7 +9,9 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::stage {
+
+using files::YamlNode;
 
 void Variables::set(const std::string& name, const std::string& text) {
   YamlNode node;
@@ -54,8 +56,8 @@ void Variables::substitute_scalar(YamlNode& node, std::vector<Error>& errors) {
       return;
     }
     if (value->kind != YamlNode::Kind::scalar) {
-      errors.emplace_back(text.substr(start, done - start) + " is " + describe(*value), "let it stand alone",
-                          node.place);
+      errors.emplace_back(text.substr(start, done - start) + " is " + files::describe(*value),
+                          "let it stand alone", node.place);
       continue;
     }
     if (start == 0) node.from_command_line = value->from_command_line;
@@ -85,13 +87,14 @@ const YamlNode* Variables::find(const std::string& name, const Place& place,
   for (const auto& [key, value] : values_) names.insert(key);
   const std::vector<std::string> known(names.begin(), names.end());
   const bool is_of_environment = std::getenv(name.c_str()) != nullptr;
-  errors.emplace_back(fmt::format("there is no variable '{}'{}", name,
-                                  is_of_environment ? "; environment variables are not read" : ""),
-                      is_of_environment
-                          ? fmt::format("declare it under vars, and give it with --set {}=VALUE", name)
-                          : did_you_mean(name, known, fmt::format("known are {}", fmt::join(known, ", "))),
-                      place);
+  errors.emplace_back(
+      fmt::format("there is no variable '{}'{}", name,
+                  is_of_environment ? "; environment variables are not read" : ""),
+      is_of_environment
+          ? fmt::format("declare it under vars, and give it with --set {}=VALUE", name)
+          : files::did_you_mean(name, known, fmt::format("known are {}", fmt::join(known, ", "))),
+      place);
   return nullptr;
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -9,7 +9,7 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::stage {
 namespace {
 
 class Connector {
@@ -97,7 +97,7 @@ class Connector {
                    "a stage is fed only by stages above it", reference.place);
     }
     return Error(fmt::format("{}: there is no stage with the tag '{}'", nodes_[index].tag, reference.tag),
-                 did_you_mean(reference.tag, above, {}), reference.place);
+                 files::did_you_mean(reference.tag, above, {}), reference.place);
   }
 
   Error nothing_feeds(const PipelineNode& node, const StageInput& input, std::size_t index) const {
@@ -203,4 +203,4 @@ void connect(Pipeline& pipeline, const std::vector<StageSpec>& specs, const Stag
   for (std::size_t i = 0; i < specs.size(); ++i) connector.connect(i, specs[i]);
 }
 
-}  // namespace crisp
+}  // namespace crisp::stage

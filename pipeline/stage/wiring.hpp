@@ -5,7 +5,7 @@
 
 #include <crisp/pipeline.hpp>
 
-namespace crisp {
+namespace crisp::stage {
 
 /// Fills in `feeders` of every node, and adds an error for each input that nothing feeds and for each entry
 /// of `inputs` that feeds nothing. Nodes whose stage is unknown are skipped: their error is already reported.
@@ -16,4 +16,4 @@ void connect(Pipeline& pipeline, const std::vector<StageSpec>& specs, const Stag
 /// example. Requires a connected pipeline.
 std::vector<PipelineWarning> put_too_low(const Pipeline& pipeline);
 
-}  // namespace crisp
+}  // namespace crisp::stage

@@ -11,7 +11,7 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Draws blocks of `block` neighbours, with replacement, as many as there are: what neighbours share (a
 /// surface, a burst) they then share in every draw (moving block bootstrap, Künsch 1989).
@@ -65,4 +65,4 @@ inline Spread bootstrap(std::size_t size, std::size_t block, std::uint64_t seed,
           .ci95 = {at(kTail), at(1 - kTail)}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-namespace crisp {
+namespace crisp::statistics {
 
 SymmetricEigen eigendecomposition(const Eigen::MatrixXd& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
@@ -31,4 +31,4 @@ Eigen::VectorXd minimum_norm_least_squares(const Eigen::MatrixXd& a, const Eigen
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

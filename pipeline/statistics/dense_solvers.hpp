@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace crisp {
+namespace crisp::statistics {
 
 // Eigen's decompositions of dynamic matrices, compiled once. Each is some seconds of compile time wherever it
 // is instantiated.
@@ -32,4 +32,4 @@ Eigen::VectorXd minimum_norm_least_squares(const Eigen::MatrixXd& a, const Eigen
 /// Inverse by LU with partial pivoting. The matrix must be invertible.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix);
 
-}  // namespace crisp
+}  // namespace crisp::statistics

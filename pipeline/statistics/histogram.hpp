@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Histogram of equal bins. Values outside the bins count in `all` only.
 struct Histogram {
@@ -23,4 +23,4 @@ struct Histogram {
   double middle(std::size_t bin) const { return first + (static_cast<double>(bin) + 0.5) * width; }
 };
 
-}  // namespace crisp
+}  // namespace crisp::statistics

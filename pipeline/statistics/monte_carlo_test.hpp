@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Result of a Monte Carlo test.
 struct MonteCarloTest {
@@ -29,4 +29,4 @@ MonteCarloTest monte_carlo_test(double observed, std::size_t draws, Draw draw) {
   return test;
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

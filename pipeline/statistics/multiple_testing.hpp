@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Šidák-corrected p-value of the smallest of a number of independent p-values.
 inline double sidak_p_value(double tests, double p_value) {
@@ -21,4 +21,4 @@ inline double effective_number_of_tests(const std::vector<double>& least) {
   return -static_cast<double>(least.size()) / sum;
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace crisp {
+namespace crisp::statistics {
 namespace {
 
 /// Members of a subset of the coefficients, given as a bit mask.
@@ -62,4 +62,4 @@ std::vector<double> NonNegativeProblem::solution() const {
   return {best.begin(), best.end()};
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

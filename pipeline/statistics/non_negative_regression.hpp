@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Non-negative least squares (NNLS) for few coefficients.
 class NonNegativeProblem {
@@ -28,4 +28,4 @@ class NonNegativeProblem {
   Eigen::VectorXd right_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::statistics

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Quantile group of each value, with about equally many values per group. Equal values share a group.
 inline std::vector<std::uint32_t> groups_of(std::span<const float> values, std::size_t count) {
@@ -22,4 +22,4 @@ inline std::vector<std::uint32_t> groups_of(std::span<const float> values, std::
   return groups;
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

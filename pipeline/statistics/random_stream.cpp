@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::statistics {
 namespace {
 
 /// FNV-1a over the name, then the finalizer of splitmix64 so that near seeds give far streams.
@@ -57,4 +57,4 @@ std::size_t RandomStream::below(std::size_t n) {
   return drawn % n;
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

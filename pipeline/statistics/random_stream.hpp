@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// A stream of random numbers that is the same on every platform: the engine is fixed by the C++ standard,
 /// the transformations (which the standard leaves open) are here. Streams of different names are independent,
@@ -44,4 +44,4 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::statistics

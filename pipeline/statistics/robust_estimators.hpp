@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// The value below which a share (0 to 1) of the values lie, which are put into another order; NaN where
 /// there are none.
@@ -45,4 +45,4 @@ inline double biweight_psi_derivative(double weight) {
   return root * (5 * root - 4);
 }
 
-}  // namespace crisp
+}  // namespace crisp::statistics

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace crisp {
+namespace crisp::statistics {
 
 /// Running weighted mean.
 struct Mean {
@@ -14,4 +14,4 @@ struct Mean {
   double value() const { return weight > 0 ? sum / weight : 0; }
 };
 
-}  // namespace crisp
+}  // namespace crisp::statistics

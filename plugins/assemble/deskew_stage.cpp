@@ -12,7 +12,7 @@
 
 #include "pipeline/model/terms_in.hpp"
 
-namespace crisp {
+namespace crisp::assemble {
 namespace {
 
 constexpr double kWorthAWarning = 0.01;  // share of the beams that are missing from the cloud
@@ -46,8 +46,8 @@ const SensorModel& DeskewStage::model(std::shared_ptr<const Calibration> calibra
   if (!model_ || calibration != calibration_) {
     model_.emplace(calibration ? *calibration : nominal_calibration(run.rig),
                    run.registrar->get<TermRegistry>());
-    with_incidence_ =
-        terms_in(model_->calibration(), run.registrar->get<TermRegistry>(), &TermInfo::needs_incidence);
+    with_incidence_ = model::terms_in(model_->calibration(), run.registrar->get<TermRegistry>(),
+                                      &TermInfo::needs_incidence);
     calibration_ = std::move(calibration);
   }
   return *model_;
@@ -77,4 +77,4 @@ void DeskewStage::finish(Outputs&, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::assemble

@@ -16,7 +16,7 @@
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/data/pool.hpp"
 
-namespace crisp {
+namespace crisp::assemble {
 
 /// `assemble.deskew`: measurements to points, under the calibration that comes from above, or else the rig's
 /// nominal values.
@@ -33,11 +33,11 @@ class DeskewStage final : public Stage {
   std::optional<SensorModel> model_;
   std::vector<std::string> with_incidence_;  ///< terms of it that depend on the beams' incidence
   std::vector<std::string> blind_;           ///< those whose beams have no known incidence
-  OrientedPlate oriented_;
+  data::OrientedPlate oriented_;
   MirrorAngleCache mirrors_;
-  Pool<Cloud> clouds_;
+  data::Pool<Cloud> clouds_;
   std::uint64_t beams_ = 0;
   std::uint64_t outside_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::assemble

@@ -4,11 +4,11 @@
 #include "plugins/assemble/deskew_stage.hpp"
 #include "plugins/assemble/revolutions_stage.hpp"
 
-namespace crisp {
+namespace crisp::assemble {
 
 void register_assemble(Registrar& registrar) {
   registrar.stage<DeskewStage>();
   registrar.stage<RevolutionsStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::assemble

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::assemble {
 
 void register_assemble(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::assemble

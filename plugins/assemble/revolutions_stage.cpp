@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace crisp {
+namespace crisp::assemble {
 
 void RevolutionsStage::describe(StageDescription<RevolutionsStage>& d) {
   d.name("assemble.revolutions").summary("merges the points of scans into one cloud per revolution");
@@ -37,4 +37,4 @@ void RevolutionsStage::finish(Outputs& out, Context& context) {
   context.print(fmt::format("{} clouds of {:g} turns", clouds_, settings_.turns));
 }
 
-}  // namespace crisp
+}  // namespace crisp::assemble

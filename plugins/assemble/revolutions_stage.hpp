@@ -7,7 +7,7 @@
 #include <crisp/revolutions.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::assemble {
 
 /// `assemble.revolutions`: from the clouds of single scans to one a revolution.
 class RevolutionsStage final : public Stage {
@@ -23,4 +23,4 @@ class RevolutionsStage final : public Stage {
   Outputs* out_ = nullptr;  ///< of the call that is going on
 };
 
-}  // namespace crisp
+}  // namespace crisp::assemble

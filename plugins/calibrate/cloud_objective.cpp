@@ -3,11 +3,11 @@
 
 #include "pipeline/estimate/placed_beams.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
-Vectors as_arrays(const Placed& placed, const Sample& sample) {
-  if (placed.index.size() != sample.beams.size()) throw UncoveredBeams();
+Vectors as_arrays(const Placed& placed, const estimate::Sample& sample) {
+  if (placed.index.size() != sample.beams.size()) throw estimate::UncoveredBeams();
   Vectors arrays;
   arrays.assign(placed.index.size(), 0);
   for (std::size_t i = 0; i < placed.index.size(); ++i) {
@@ -21,7 +21,7 @@ Vectors as_arrays(const Placed& placed, const Sample& sample) {
 
 }  // namespace
 
-ModelQuality model_quality(const SensorModel& model, const Sample& sample,
+ModelQuality model_quality(const SensorModel& model, const estimate::Sample& sample,
                            const std::vector<std::size_t>& free, Measure& measure, double scale) {
   PointDerivatives derivatives;
   const Placed placed = model.place(sample.beams, *sample.plate, free, derivatives);
@@ -40,8 +40,10 @@ ModelQuality model_quality(const SensorModel& model, const Sample& sample,
   return quality;
 }
 
-double model_quality(const SensorModel& model, const Sample& sample, Measure& measure, double scale) {
-  return measure.evaluate(place_all(model, sample.beams, *sample.plate).view(), {}, scale, false).value;
+double model_quality(const SensorModel& model, const estimate::Sample& sample, Measure& measure,
+                     double scale) {
+  return measure.evaluate(estimate::place_all(model, sample.beams, *sample.plate).view(), {}, scale, false)
+      .value;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

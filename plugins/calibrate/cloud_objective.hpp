@@ -9,7 +9,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Value of a cloud's quality and its derivatives with respect to the model's free parameters.
 struct ModelQuality {
@@ -24,10 +24,11 @@ struct ModelQuality {
 /// @param sample  n beams, all of which encoder readings cover
 /// @param free    indices into model.values()
 /// @param scale   [m] the measure's
-ModelQuality model_quality(const SensorModel& model, const Sample& sample,
+ModelQuality model_quality(const SensorModel& model, const estimate::Sample& sample,
                            const std::vector<std::size_t>& free, Measure& measure, double scale);
 
 /// The value alone.
-double model_quality(const SensorModel& model, const Sample& sample, Measure& measure, double scale);
+double model_quality(const SensorModel& model, const estimate::Sample& sample, Measure& measure,
+                     double scale);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

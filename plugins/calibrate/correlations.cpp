@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 std::vector<Correlation> strongest_correlations(const Calibration& calibration, std::size_t most,
                                                 double least) {
@@ -26,4 +26,4 @@ std::vector<Correlation> strongest_correlations(const Calibration& calibration, 
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -6,7 +6,7 @@
 
 #include <crisp/calibration.hpp>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Two parameters whose errors go together.
 struct Correlation {
@@ -21,4 +21,4 @@ struct Correlation {
 std::vector<Correlation> strongest_correlations(const Calibration& calibration, std::size_t most,
                                                 double least);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

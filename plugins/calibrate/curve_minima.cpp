@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 std::vector<double> local_minima(const Curve& curve, const std::vector<double>& grid, bool circular) {
   std::vector<double> cost;
@@ -44,4 +44,4 @@ LineMinimum bottom(const Curve& curve, const LineSearch& search) {
   return best;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

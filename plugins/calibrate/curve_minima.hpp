@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// A function of one number. Where it is costly it may be a smooth one of several widths: see bottom().
 using Curve = std::function<double(double)>;
@@ -31,4 +31,4 @@ struct LineSearch {
 /// the curve still falls where the search ends.
 LineMinimum bottom(const Curve& curve, const LineSearch& search);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -10,8 +10,10 @@
 
 #include "plugins/calibrate/rig_check.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Refinement;
 
 using Caveats = std::vector<std::string>;
 
@@ -28,7 +30,7 @@ Caveats of_misfit(const Refinement& refined, double noise) {
 
 /// Contradictions with the rig. The stage that gave a start outside of a range has already reported it.
 Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
-  const ParameterPrior range;
+  const estimate::ParameterPrior range;
   const RigCheck check = check_with_rig(calibration, rig, range);
   const bool is_new = check.is_explained || check_with_rig(start, rig, range).caveats.empty();
   return is_new ? check.caveats : far_from_nominal(calibration, rig);
@@ -83,11 +85,11 @@ std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig
 }
 
 double least_agreement(const Refinement& refined) {
-  return std::ranges::min(refined.views, {}, &ViewConsistency::share).share;
+  return std::ranges::min(refined.views, {}, &estimate::ViewConsistency::share).share;
 }
 
 bool agrees_well(const Refinement& refined) {
-  return !refined.views.empty() && least_agreement(refined) > kConsistentShare;
+  return !refined.views.empty() && least_agreement(refined) > estimate::kConsistentShare;
 }
 
 double misfit_of(const Refinement& refined, double noise) { return std::sqrt(refined.chi2) * noise; }
@@ -105,4 +107,4 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
   return caveats;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -10,7 +10,7 @@
 
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Caveats of a refined calibration's fit: convergence, agreement of views, misfit of the surfaces against
 /// the ranges' noise, consistency with the rig, and RQE.
@@ -21,7 +21,7 @@ namespace crisp {
 /// @param refined      of `start`
 /// @param calibration  the refined one, with its quality: "rqe_before", "rqe_unrefined", "rqe_after" [nat]
 /// @param noise        [m] standard deviation of a range
-std::vector<std::string> check_fit(const Refinement& refined, const Calibration& calibration,
+std::vector<std::string> check_fit(const estimate::Refinement& refined, const Calibration& calibration,
                                    const Calibration& start, const Rig& rig, double noise);
 
 /// Caveats of devices without any beam, and of lasers that were heard for less than half of the recording:
@@ -30,18 +30,18 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
 std::vector<std::string> check_silence(const Measurements& beams, const Rig& rig);
 
 /// The least share of beams on which two views agree. @param refined  with views
-double least_agreement(const Refinement& refined);
+double least_agreement(const estimate::Refinement& refined);
 
 /// Whether views are known to agree well, so that no other judge is needed.
-bool agrees_well(const Refinement& refined);
+bool agrees_well(const estimate::Refinement& refined);
 
 /// [m] How far beams miss their surfaces (RMS).
-double misfit_of(const Refinement& refined, double noise);
+double misfit_of(const estimate::Refinement& refined, double noise);
 
 /// The same in units of what ranges scatter by from neighbour to neighbour, or else of their stated noise.
-double relative_misfit(const Refinement& refined, double noise);
+double relative_misfit(const estimate::Refinement& refined, double noise);
 
 /// Limit of relative_misfit(). The surfaces' own roughness makes up to 1.4: see SurfelSettings::max_excess.
 inline constexpr double kPoorFit = 1.5;
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -9,14 +9,14 @@
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/curve_minima.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 /// The cost over one parameter.
-Curve cost_over(const SensorModel& model, std::size_t parameter, const Sample& sample, Measure& measure,
-                double sigma) {
+Curve cost_over(const SensorModel& model, std::size_t parameter, const estimate::Sample& sample,
+                Measure& measure, double sigma) {
   return [&, parameter, sigma](double value) {
-    return model_quality(with_one(model, parameter, value), sample, measure, sigma);
+    return model_quality(estimate::with_one(model, parameter, value), sample, measure, sigma);
   };
 }
 
@@ -42,20 +42,21 @@ double between(double a, double b, bool circular) {
 
 std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_t parameter,
                                                   const std::vector<double>& grid, bool circular,
-                                                  const Sample& sample, Measure& measure,
-                                                  const ParameterPrior& range, const Narrowing& sigma) {
+                                                  const estimate::Sample& sample, Measure& measure,
+                                                  const estimate::ParameterPrior& range,
+                                                  const Narrowing& sigma) {
   constexpr std::size_t kMaxMinima = 4;
   constexpr double kSame = 0.1;          // of a step: ends so near to one another are one
   constexpr std::size_t kFinalists = 2;  // under the narrowest kernel, which uses all beams
   const auto sigmas = annealing(sigma.from, sigma.to);
-  std::vector<Sample> samples;
-  for (const double width : sigmas) samples.push_back(thin_for(width, sample));
+  std::vector<estimate::Sample> samples;
+  for (const double width : sigmas) samples.push_back(estimate::thin_for(width, sample));
   auto starts =
       local_minima(cost_over(model, parameter, samples.front(), measure, sigma.from), grid, circular);
   starts.resize(std::min(starts.size(), kMaxMinima));
   const double margin = circular ? std::numbers::pi : grid[1] - grid[0];
   const auto step_at = [&](double place, std::size_t k) {
-    const SensorModel there = with_one(model, parameter, place);
+    const SensorModel there = estimate::with_one(model, parameter, place);
     return std::abs(search_basis(there, samples[k], {parameter}, range, sigmas[k])(0, 0));
   };
   const auto follow = [&](double start, std::size_t k) {
@@ -76,7 +77,7 @@ std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_
     if (k + 2 == sigmas.size()) bottoms.resize(std::min(bottoms.size(), kFinalists));
   }
   const LineMinimum best = bottoms.front();
-  model = with_one(model, parameter, best.at);
+  model = estimate::with_one(model, parameter, best.at);
   const bool has_competitor =
       bottoms.size() > 1 && between(bottoms[1].at, best.at, circular) > step_at(best.at, sigmas.size() - 1);
   if (!has_competitor) return std::nullopt;
@@ -84,4 +85,4 @@ std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_
       .parameter = parameter, .at = bottoms[1].at, .height = bottoms[1].value - best.value};
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

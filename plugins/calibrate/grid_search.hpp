@@ -6,7 +6,7 @@
 
 #include "plugins/calibrate/rqe_minimizer.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Distance of two values of a parameter.
 ///
@@ -41,7 +41,8 @@ struct CompetingMinimum {
 /// @param circular  whether its last value is next to its first
 std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_t parameter,
                                                   const std::vector<double>& grid, bool circular,
-                                                  const Sample& sample, Measure& measure,
-                                                  const ParameterPrior& range, const Narrowing& sigma);
+                                                  const estimate::Sample& sample, Measure& measure,
+                                                  const estimate::ParameterPrior& range,
+                                                  const Narrowing& sigma);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -17,8 +17,11 @@
 #include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/wall_straightness.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Sample;
+using estimate::slot;
 
 /// Values from reach below to reach above, with as many steps to either side.
 std::vector<double> around(double centre, double reach, int steps) {
@@ -40,9 +43,9 @@ class InPlaneCalibration {
                      Measure& measure, const InPlaneSettings& settings)
       : model_(model),
         free_(free),
-        front_(in_plane(sample, settings.half_width, Half::kFront)),
-        back_(in_plane(sample, settings.half_width, Half::kBack)),
-        both_(in_plane(sample, settings.half_width, Half::kBoth)),
+        front_(estimate::in_plane(sample, settings.half_width, estimate::Half::kFront)),
+        back_(estimate::in_plane(sample, settings.half_width, estimate::Half::kBack)),
+        both_(estimate::in_plane(sample, settings.half_width, estimate::Half::kBoth)),
         measure_(measure),
         settings_(settings),
         bunches_(turns_both_ways(both_)) {}
@@ -50,15 +53,15 @@ class InPlaneCalibration {
   /// By the laser's own beams, if they show it: at constant speed they do not, and its start is kept until
   /// all lasers are compared.
   void find_eta(std::size_t laser) {
-    const Sample front = of_laser(front_, laser);
-    const Sample own = front.beams.size() < kFewBeams ? of_laser(back_, laser) : front;
-    const auto free = those_free({slot(model_, laser, kEta)});
+    const Sample front = estimate::of_laser(front_, laser);
+    const Sample own = front.beams.size() < kFewBeams ? estimate::of_laser(back_, laser) : front;
+    const auto free = those_free({slot(model_, laser, estimate::kEta)});
     if (own.beams.size() < kFewBeams || free.empty()) return;
-    if (identifiable_parameters({.free = free, .unobservable = {}}, model_, own, settings_.range)
+    if (estimate::identifiable_parameters({.free = free, .unobservable = {}}, model_, own, settings_.range)
             .free.empty())
       return;
-    const double centre = centres_of(settings_.range, model_, free)[0];
-    const double reach = range_of(settings_.range, model_.names()[free[0]]);
+    const double centre = estimate::centres_of(settings_.range, model_, free)[0];
+    const double reach = estimate::range_of(settings_.range, model_.names()[free[0]]);
     constexpr int kSteps = 25;  // to either side
     const auto grid = around(centre, reach * kSteps / (kSteps + 1), kSteps);
     keep(multistart_search(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
@@ -66,11 +69,12 @@ class InPlaneCalibration {
   }
 
   void find_tau_alpha(std::size_t laser) {
-    const Sample own = of_laser(both_, laser);
-    const auto free = those_free({slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
+    const Sample own = estimate::of_laser(both_, laser);
+    const auto free =
+        those_free({slot(model_, laser, estimate::kTau), slot(model_, laser, estimate::kAlpha)});
     if (!sees_both_sides(laser) || free.empty()) return;
     for (const double sigma : annealing(settings_.sigma_from, settings_.sigma_to)) {
-      minimize_rqe(model_, thin_for(sigma, own), free, measure_, sigma, settings_.range,
+      minimize_rqe(model_, estimate::thin_for(sigma, own), free, measure_, sigma, settings_.range,
                    sigma > settings_.sigma_to ? rough(settings_.minimizer) : settings_.minimizer);
     }
   }
@@ -79,13 +83,13 @@ class InPlaneCalibration {
   void find_lambdas() {
     std::size_t reference = 0;
     while (reference < model_.lasers() &&
-           (is_free(free_, slot(model_, reference, kLambda)) || has_few(reference)))
+           (estimate::is_free(free_, slot(model_, reference, estimate::kLambda)) || has_few(reference)))
       ++reference;
     if (reference == model_.lasers()) return;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
-      const auto free = those_free({slot(model_, laser, kLambda)});
+      const auto free = those_free({slot(model_, laser, estimate::kLambda)});
       if (free.empty() || has_few(laser)) continue;
-      const Sample pair = select(both_, [&](std::size_t i) {
+      const Sample pair = estimate::select(both_, [&](std::size_t i) {
         return both_.beams.laser[i] == reference || both_.beams.laser[i] == laser;
       });
       find_lambda(free[0], pair);
@@ -95,9 +99,9 @@ class InPlaneCalibration {
   void find_geometry() {
     std::vector<std::size_t> geometry;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
-      std::vector<std::size_t> own = {slot(model_, laser, kLambda)};
+      std::vector<std::size_t> own = {slot(model_, laser, estimate::kLambda)};
       if (sees_both_sides(laser)) {
-        own.insert(own.end(), {slot(model_, laser, kTau), slot(model_, laser, kAlpha)});
+        own.insert(own.end(), {slot(model_, laser, estimate::kTau), slot(model_, laser, estimate::kAlpha)});
       }
       const auto free = those_free(own);
       if (!has_few(laser)) geometry.insert(geometry.end(), free.begin(), free.end());
@@ -140,7 +144,7 @@ class InPlaneCalibration {
   void find_lambda(std::size_t lambda, const Sample& pair) {
     constexpr int kSteps = 120;  // 3°: the local minimum at σ = 0.5 m is wider in any room
     constexpr int kFine = 180;
-    constexpr double kNear = 20 * kDegree;
+    constexpr double kNear = 20 * data::kDegree;
     const int steps = bunches_ ? kFine : kSteps;
     const std::string& name = model_.names()[lambda];
     const auto grid_around = [&](double centre, double reach) {
@@ -148,8 +152,8 @@ class InPlaneCalibration {
       return around(centre, reach, std::max(2, static_cast<int>(half)));
     };
     if (settings_.range.nominal.contains(name)) {
-      const double centre = centres_of(settings_.range, model_, {lambda})[0];
-      const auto grid = grid_around(centre, range_of(settings_.range, name));
+      const double centre = estimate::centres_of(settings_.range, model_, {lambda})[0];
+      const auto grid = grid_around(centre, estimate::range_of(settings_.range, name));
       return keep(to_best_lambda(model_, lambda, grid, false, pair));
     }
     const SensorModel start = model_;
@@ -183,7 +187,7 @@ class InPlaneCalibration {
       const double noise = settings_.sigma_to;
       return std::log(wall_straightness(model, pair, noise) / wall_straightness(best, pair, noise)) / 2;
     }
-    const Sample thin = thin_for(settings_.sigma_to, pair);
+    const Sample thin = estimate::thin_for(settings_.sigma_to, pair);
     return model_quality(model, thin, measure_, settings_.sigma_to) -
            model_quality(best, thin, measure_, settings_.sigma_to);
   }
@@ -193,7 +197,7 @@ class InPlaneCalibration {
   std::vector<std::size_t> those_free(const std::vector<std::size_t>& slots) const {
     std::vector<std::size_t> result;
     std::copy_if(slots.begin(), slots.end(), std::back_inserter(result),
-                 [&](std::size_t s) { return is_free(free_, s); });
+                 [&](std::size_t s) { return estimate::is_free(free_, s); });
     return result;
   }
 
@@ -239,10 +243,11 @@ double spacing(const Sample& own) {
 }  // namespace
 
 bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings) {
-  constexpr double kFar = 5 * kDegree;  // half a metre on a wall in 6 m
-  const Sample both = in_plane(sample, settings.half_width, Half::kBoth);
+  constexpr double kFar = 5 * data::kDegree;  // half a metre on a wall in 6 m
+  const Sample both = estimate::in_plane(sample, settings.half_width, estimate::Half::kBoth);
   const std::set<std::uint16_t> lasers(both.beams.laser.begin(), both.beams.laser.end());
-  return std::ranges::any_of(lasers, [&](auto laser) { return spacing(of_laser(both, laser)) > kFar; });
+  return std::ranges::any_of(lasers,
+                             [&](auto laser) { return spacing(estimate::of_laser(both, laser)) > kFar; });
 }
 
 std::vector<CompetingMinimum> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
@@ -256,4 +261,4 @@ std::vector<CompetingMinimum> calibrate_in_plane(SensorModel& model, const std::
   return calibration.competitors();
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -6,13 +6,13 @@
 #include "plugins/calibrate/grid_search.hpp"
 #include "plugins/calibrate/rqe_minimizer.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 struct InPlaneSettings {
   double half_width = 0.0044;  ///< [rad] beams so near to the plate's plane count as in it
   double sigma_from = 0.5;     ///< [m]
   double sigma_to = 0.1;       ///< [m]
-  ParameterPrior range;
+  estimate::ParameterPrior range;
   MinimizerSettings minimizer;
 };
 
@@ -25,7 +25,7 @@ inline constexpr std::size_t kFewBeams = 20;
 /// right).
 ///
 /// @param sample  all its beams are covered by encoder readings
-bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
+bool sees_single_spots(const estimate::Sample& sample, const InPlaneSettings& settings);
 
 /// A first calibration in the paper's order, from the two beams of each laser that lie in the plate's plane:
 ///   1. each η from the front beam alone, with τ and α as they are: the turns of the plate must agree;
@@ -39,7 +39,7 @@ bool sees_single_spots(const Sample& sample, const InPlaneSettings& settings);
 /// @param sample  covered for every η in the range
 /// @return  competing minima of η and λ, the next lowest of each
 std::vector<CompetingMinimum> calibrate_in_plane(SensorModel& model, const std::vector<std::size_t>& free,
-                                                 const Sample& sample, Measure& measure,
+                                                 const estimate::Sample& sample, Measure& measure,
                                                  const InPlaneSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -15,7 +15,7 @@
 
 #include "pipeline/data/internal_error.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 using Ipopt::Index;
@@ -106,7 +106,8 @@ class BoxProblem final : public Ipopt::TNLP {
     is_outside_ = false;
     best_ = {.x = question.start, .value = std::numeric_limits<double>::infinity()};
     evaluate(question.start);
-    if (!std::isfinite(best_.value)) throw internal_error("the cost function is not a number at the start");
+    if (!std::isfinite(best_.value))
+      throw data::internal_error("the cost function is not a number at the start");
     // As Ipopt's "gradient-based" does, which it would keep from the first question on.
     constexpr double kSteepest = 100;
     factor_ = std::min(1.0, kSteepest / slope().lpNorm<Eigen::Infinity>());
@@ -337,7 +338,7 @@ Minimum minimize(const Objective& objective, const Eigen::VectorXd& start, const
                  const MinimizerSettings& settings) {
   const auto n = start.size();
   if (box.lower.size() != n || box.upper.size() != n || box.basis.rows() != n || box.basis.cols() != n) {
-    throw internal_error("the start and the box of a minimization have different sizes");
+    throw data::internal_error("the start and the box of a minimization have different sizes");
   }
   if (n == 0) return {.x = start, .value = objective(start, nullptr)};
   std::unique_lock lock(solvers().mutex);
@@ -355,4 +356,4 @@ Minimum minimize(const Objective& objective, const Eigen::VectorXd& start, const
   return kept;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// A function to be minimized: returns its value at x and, where `gradient` is not null, sets it.
 using Objective = std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
@@ -42,4 +42,4 @@ struct Minimum {
 Minimum minimize(const Objective& objective, const Eigen::VectorXd& start, const Box& box,
                  const MinimizerSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -12,7 +12,7 @@
 #include "pipeline/model/term_faults.hpp"
 #include "pipeline/model/terms_in.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 Calibration ordered_as(const Rig& rig, Calibration calibration) {
   std::vector<LaserCalibration> ordered;
@@ -57,7 +57,7 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   }
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration read =
-      read_calibration(file_, judge_by(terms), [&](const Error& old) { context.warn(old.what()); });
+      read_calibration(file_, model::judge_by(terms), [&](const Error& old) { context.warn(old.what()); });
   context.reads(file_);
   check_direction(read, context.rig(), file_);
   Calibration calibration = ordered_as(context.rig(), read);
@@ -77,13 +77,13 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   const auto counts_from = [](CountsFrom from) {
     return [from](const TermInfo& term) { return term.counts_from == from; };
   };
-  const auto from_begin = terms_in(calibration, terms, counts_from(CountsFrom::kRunsEpoch));
+  const auto from_begin = model::terms_in(calibration, terms, counts_from(CountsFrom::kRunsEpoch));
   if (!from_begin.empty()) {
     context.warn(fmt::format(
         "{}: a term of the time since a recording began is valid for the calibrated recording only",
         fmt::join(from_begin, ", ")));
   }
-  const auto from_zero = terms_in(calibration, terms, counts_from(CountsFrom::kEncodersZero));
+  const auto from_zero = model::terms_in(calibration, terms, counts_from(CountsFrom::kEncodersZero));
   if (!from_zero.empty()) {
     context.print(fmt::format(
         "{}: a term of the plate's angle is valid as long as the encoder counts from the same zero",
@@ -92,4 +92,4 @@ void LoadCalibrationStage::process(const Inputs&, Outputs& out, Context& context
   out.give(std::move(calibration));
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

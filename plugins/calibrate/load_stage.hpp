@@ -8,7 +8,7 @@
 #include <crisp/rig.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// The calibration with its lasers in the order of the rig; those that the rig does not have are left out.
 /// @throws Error  if a laser of the rig has no calibration
@@ -24,4 +24,4 @@ class LoadCalibrationStage final : public Stage {
   std::filesystem::path file_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

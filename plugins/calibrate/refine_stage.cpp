@@ -20,8 +20,11 @@
 #include "plugins/calibrate/rig_hypotheses.hpp"
 #include "plugins/calibrate/single_beam_refusal.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Refinement;
+using estimate::RefinementSettings;
 
 /// Whether the refined values answer all caveats of the calibration that they started from.
 bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refined) {
@@ -40,12 +43,12 @@ std::vector<Calibration> starts_of_rig(const Rig& rig) {
 /// Whether views agree, and so do the data and the rig.
 bool fits(const Refinement& refined, const Rig& rig) {
   if (!agrees_well(refined) || !refined.outcome.caveats.empty()) return false;
-  const Calibration found = calibration_of(refined.outcome, rig);
+  const Calibration found = estimate::calibration_of(refined.outcome, rig);
   const RigCheck check = check_with_rig(found, rig, {});
   return check.caveats.empty() || in_direction_of_rig(found, rig, check);
 }
 
-RoundReporter reporter(Context& context) {
+estimate::RoundReporter reporter(Context& context) {
   return [&context](int round) {
     context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
     return !context.interrupted();
@@ -63,15 +66,17 @@ void RefineStage::describe(StageDescription<RefineStage>& d) {
       "If all beams lie in the plate's plane (two of each laser), the walls are assumed to be upright.");
   d.takes<Measurements>().takes<ClockMap>(Need::optional);
   d.holds<PlateTrajectory>().holds<Calibration>().gives<Calibration>();
-  d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::noise,
+  d.option("noise", &RefineStage::settings_, &RefinementSettings::surfels, &quality::SurfelSettings::noise,
            "standard deviation of a range's noise")
       .unit("m")
       .range(1e-6, 1);
-  d.option("min_cell", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::smallest,
+  d.option("min_cell", &RefineStage::settings_, &RefinementSettings::surfels,
+           &quality::SurfelSettings::smallest,
            "side of the smallest flat patch; reduce it for small surfaces with many beams")
       .unit("m")
       .range(0.01, 10);
-  d.option("max_cell", &RefineStage::settings_, &RefinementSettings::surfels, &SurfelSettings::largest,
+  d.option("max_cell", &RefineStage::settings_, &RefinementSettings::surfels,
+           &quality::SurfelSettings::largest,
            "side of the first patches of the coarse-to-fine search for flat surfaces")
       .unit("m")
       .range(0.01, 100);
@@ -96,8 +101,9 @@ void RefineStage::check(const RunSettings& run) const {
                         throw Error("the largest patch is smaller than the smallest",
                                     "give a `max_cell` above `min_cell`");
                       }),
-            of_option("fixed", [&] { check_fixed(settings_.fixed, nominal); }), of_option("terms", [&] {
-              add_requested_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>());
+            of_option("fixed", [&] { estimate::check_fixed(settings_.fixed, nominal); }),
+            of_option("terms", [&] {
+              estimate::add_requested_terms(nominal, settings_.terms, run.registrar->get<TermRegistry>());
             }));
 }
 
@@ -110,32 +116,33 @@ void RefineStage::process(const Inputs& in, Outputs&, Context& context) {
 }
 
 void RefineStage::finish(Outputs& out, Context& context) {
-  Sample sample = collected_.sample();
+  estimate::Sample sample = collected_.sample();
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   const auto& terms = context.run().registrar->get<TermRegistry>();
-  settings_.prior.nominal = nominal_values(context.rig());
+  settings_.prior.nominal = estimate::nominal_values(context.rig());
   settings_.angle_step = std::abs(context.rig().plate.angle_per_count());
-  settings_.angle_error = plate_angle_error(*sample.plate, context.rig(), clocks_);
+  settings_.angle_error = estimate::plate_angle_error(*sample.plate, context.rig(), clocks_);
   refuse_single_beams(sample.beams, *start_, settings_.fixed);
   Calibration with_terms = *start_;
-  add_requested_terms(with_terms, settings_.terms, terms);
+  estimate::add_requested_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
-  const RoundReporter on_round = reporter(context);
-  Refinement refined = refine_by_surfels(start, sample, settings_, on_round);
-  if (RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
-    const RecordingLags lags = lags_of_recordings(refined.outcome.model, sample, settings_);
+  const estimate::RoundReporter on_round = reporter(context);
+  Refinement refined = estimate::refine_by_surfels(start, sample, settings_, on_round);
+  if (data::RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
+    const estimate::RecordingLags lags =
+        estimate::lags_of_recordings(refined.outcome.model, sample, settings_);
     report(lags, *sample.plate, context);
-    sample = with_common_lags(std::move(sample), lags);
-    refined = refine_by_surfels(start, sample, settings_, on_round);
+    sample = estimate::with_common_lags(std::move(sample), lags);
+    refined = estimate::refine_by_surfels(start, sample, settings_, on_round);
   }
   if (auto better = refined_from_rig(sample, refined, context)) refined = std::move(*better);
   if (context.interrupted()) return;
 
-  const auto halves =
-      cross_validate(refined.outcome.model, sample, settings_, [&](int) { return !context.interrupted(); });
+  const auto halves = estimate::cross_validate(refined.outcome.model, sample, settings_,
+                                               [&](int) { return !context.interrupted(); });
   if (context.interrupted()) return;
-  add_clock_errors(refined.outcome, context.rig(), clocks_);
-  Calibration calibration = calibration_of(refined.outcome, context.rig());
+  estimate::add_clock_errors(refined.outcome, context.rig(), clocks_);
+  Calibration calibration = estimate::calibration_of(refined.outcome, context.rig());
   // calibrate.rqe decides by values that may be some centimetres off.
   if (auto turned =
           in_direction_of_rig(calibration, context.rig(), check_with_rig(calibration, context.rig(), {}))) {
@@ -152,21 +159,23 @@ void RefineStage::finish(Outputs& out, Context& context) {
   out.give(std::move(calibration));
 }
 
-std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, const Refinement& refined,
-                                                        Context& context) const {
+std::optional<Refinement> RefineStage::refined_from_rig(const estimate::Sample& sample,
+                                                        const Refinement& refined, Context& context) const {
   const bool contradicts_rig =
-      !check_with_rig(calibration_of(refined.outcome, context.rig()), context.rig(), {}).caveats.empty();
+      !check_with_rig(estimate::calibration_of(refined.outcome, context.rig()), context.rig(), {})
+           .caveats.empty();
   if (refined.views.empty() || (agrees_well(refined) && !contradicts_rig)) return std::nullopt;
   const auto& terms = context.run().registrar->get<TermRegistry>();
   for (Calibration& from : starts_of_rig(context.rig())) {
     if (context.interrupted()) return std::nullopt;
     from.direction = start_->direction;
-    add_requested_terms(from, settings_.terms, terms);
+    estimate::add_requested_terms(from, settings_.terms, terms);
     try {
       const SensorModel start(from, terms);
       RefinementSettings settings = settings_;
-      for (auto& [name, known] : settings.prior.nominal) known.value = picked(start, {start.index(name)})[0];
-      Refinement again = refine_by_surfels(start, sample, settings, reporter(context));
+      for (auto& [name, known] : settings.prior.nominal)
+        known.value = estimate::picked(start, {start.index(name)})[0];
+      Refinement again = estimate::refine_by_surfels(start, sample, settings, reporter(context));
       if (!fits(again, context.rig())) continue;
       context.print(fmt::format(
           "refined from the rig's nominal values, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",
@@ -179,9 +188,9 @@ std::optional<Refinement> RefineStage::refined_from_rig(const Sample& sample, co
   return std::nullopt;
 }
 
-std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refinement& refined,
+std::vector<std::string> RefineStage::mistakes(const estimate::Sample& sample, const Refinement& refined,
                                                Measure& measure, Context& context) const {
-  if (is_in_plane(sample)) return {};
+  if (estimate::is_in_plane(sample)) return {};
   const HypothesisSettings settings{
       .terms = &context.run().registrar->get<TermRegistry>(),
       .measure = &measure,
@@ -199,7 +208,7 @@ std::vector<std::string> RefineStage::mistakes(const Sample& sample, const Refin
   return found;
 }
 
-void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
+void RefineStage::judge(const estimate::Sample& sample, const Refinement& refined, Calibration& calibration,
                         Context& context) const {
   const auto& registrar = *context.run().registrar;
   const auto& terms = registrar.get<TermRegistry>();
@@ -207,7 +216,7 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
       registrar.get<MeasureRegistry>().make("rqe", MeasureSettings{}, registrar.get<SearchRegistry>());
   const auto rqe = rqe_of({refined.outcome.model, SensorModel(nominal_calibration(context.rig()), terms),
                            SensorModel(*start_, terms)},
-                          longest_recording(sample), {.sigma = sigma_}, *measure);
+                          estimate::longest_recording(sample), {.sigma = sigma_}, *measure);
   calibration.quality = {{"rqe_before", rqe[1]},
                          {"rqe_unrefined", rqe[2]},
                          {"rqe_after", rqe[0]},
@@ -256,4 +265,4 @@ void RefineStage::judge(const Sample& sample, const Refinement& refined, Calibra
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -16,7 +16,7 @@
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Refines a calibration by least squares against the data's flat surfaces.
 class RefineStage final : public Stage {
@@ -27,25 +27,26 @@ class RefineStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  void judge(const Sample& sample, const Refinement& refined, Calibration& calibration,
+  void judge(const estimate::Sample& sample, const estimate::Refinement& refined, Calibration& calibration,
              Context& context) const;
 
   /// A refinement from the rig's nominal values that fits, where the given one does not: the entropy of a
   /// short recording may be least far from the optimum.
-  std::optional<Refinement> refined_from_rig(const Sample& sample, const Refinement& refined,
-                                             Context& context) const;
+  std::optional<estimate::Refinement> refined_from_rig(const estimate::Sample& sample,
+                                                       const estimate::Refinement& refined,
+                                                       Context& context) const;
 
   /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree
   /// well, or the data determine little.
-  std::vector<std::string> mistakes(const Sample& sample, const Refinement& refined, Measure& measure,
-                                    Context& context) const;
+  std::vector<std::string> mistakes(const estimate::Sample& sample, const estimate::Refinement& refined,
+                                    Measure& measure, Context& context) const;
 
-  RefinementSettings settings_;
+  estimate::RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased
-  OrientedPlate oriented_;
-  MeasurementBuffer collected_;
+  data::OrientedPlate oriented_;
+  estimate::MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
   std::map<std::string, ClockMap> clocks_;  ///< by device
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -5,7 +5,7 @@
 #include "plugins/calibrate/refine_stage.hpp"
 #include "plugins/calibrate/rqe_stage.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 void register_calibrate(Registrar& registrar) {
   registrar.stage<LoadCalibrationStage>();
@@ -13,4 +13,4 @@ void register_calibrate(Registrar& registrar) {
   registrar.stage<RefineStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 void register_calibrate(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

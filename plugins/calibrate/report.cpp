@@ -14,7 +14,7 @@
 #include "plugins/calibrate/correlations.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 nlohmann::json json_of(const Parameter& p) {
@@ -49,22 +49,22 @@ void report_rqe(const std::map<std::string, double>& quality, Context& context) 
 
 }  // namespace
 
-std::vector<double> rqe_of(const std::vector<SensorModel>& models, const Sample& sample,
+std::vector<double> rqe_of(const std::vector<SensorModel>& models, const estimate::Sample& sample,
                            const CrispnessSettings& settings, Measure& measure) {
-  LagRange lags = lag_range(models.front(), 0);
+  estimate::LagRange lags = estimate::lag_range(models.front(), 0);
   for (const SensorModel& model : models) {
-    const LagRange own = lag_range(model, 0);
+    const estimate::LagRange own = estimate::lag_range(model, 0);
     lags = {.earliest = std::min(lags.earliest, own.earliest), .latest = std::max(lags.latest, own.latest)};
   }
-  const Sample beams =
-      thin_by_area(covered(sample, lags.earliest, lags.latest), models.front(), settings.points, 1);
+  const estimate::Sample beams = estimate::thin_by_area(estimate::covered(sample, lags.earliest, lags.latest),
+                                                        models.front(), settings.points, 1);
   std::vector<double> all;
   for (const SensorModel& model : models) all.push_back(model_quality(model, beams, measure, settings.sigma));
   return all;
 }
 
 void report(const Calibration& calibration, const Calibration& start, Context& context) {
-  context.print(table_of(calibration, context.rig()));
+  context.print(estimate::table_of(calibration, context.rig()));
   nlohmann::json lasers;
   for (const auto& laser : calibration.lasers) {
     for (const auto* p : {&laser.lambda, &laser.tau, &laser.alpha, &laser.eta}) {
@@ -80,7 +80,7 @@ void report(const Calibration& calibration, const Calibration& start, Context& c
                                              [&](const auto& old) { return old.parameter == u.parameter; });
     if (reported_before) continue;
     context.warn(in_words(u));
-    is_steady = is_steady || (u.parameter.ends_with(".eta") && u.reason == kNotByMotion);
+    is_steady = is_steady || (u.parameter.ends_with(".eta") && u.reason == estimate::kNotByMotion);
   }
   if (is_steady) {
     context.warn(
@@ -111,7 +111,7 @@ void report_direction(const Calibration& calibration, const Calibration& start, 
   }
 }
 
-void report(const std::optional<CrossValidation>& halves, Context& context) {
+void report(const std::optional<estimate::CrossValidation>& halves, Context& context) {
   if (!halves) {
     context.print(
         "no cross-validation, which needs two turns of the plate, and that half of the turns determines what all do");
@@ -125,7 +125,7 @@ void report(const std::optional<CrossValidation>& halves, Context& context) {
       halves->difference * 1e3, halves->ratio()));
 }
 
-void report(const std::vector<ViewConsistency>& views, Context& context) {
+void report(const std::vector<estimate::ViewConsistency>& views, Context& context) {
   auto section = nlohmann::json::array();
   for (const auto& pair : views) {
     section.push_back({{"view", pair.view},
@@ -135,15 +135,15 @@ void report(const std::vector<ViewConsistency>& views, Context& context) {
                        {"share", pair.share}});
   }
   context.report({{"views", section}});
-  const auto least = std::ranges::min_element(views, {}, &ViewConsistency::share);
+  const auto least = std::ranges::min_element(views, {}, &estimate::ViewConsistency::share);
   if (least == views.end()) return;
   context.print(
       fmt::format("views agree on at least {:.0f} % of their common flat surfaces; least: {} and {}, on {}",
                   100 * least->share, least->view, least->other, in_words(least->orientation)));
 }
 
-void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& context) {
-  const auto recordings = recordings_of(plate);
+void report(const estimate::RecordingLags& lags, const PlateTrajectory& plate, Context& context) {
+  const auto recordings = data::recordings_of(plate);
   const auto& lasers = context.rig().lasers;
   std::string words = fmt::format(
       "{} recordings, each with lags of its own: eta there less the mean over all [ms]", recordings.size());
@@ -168,4 +168,4 @@ void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& co
   context.report({{"recordings", section}});
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -13,7 +13,7 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 struct CrispnessSettings {
   double sigma = 0.05;         ///< [m]
@@ -22,7 +22,7 @@ struct CrispnessSettings {
 
 /// [nat] RQE of the cloud under each of some models, for the same beams: spread evenly over the surfaces on
 /// which the first model puts them, and covered by encoder readings at the lags of all.
-std::vector<double> rqe_of(const std::vector<SensorModel>& models, const Sample& sample,
+std::vector<double> rqe_of(const std::vector<SensorModel>& models, const estimate::Sample& sample,
                            const CrispnessSettings& settings, Measure& measure);
 
 /// Adds a calibration to the run's summary: the table for people, all of its numbers for programs, and a
@@ -34,12 +34,12 @@ void report(const Calibration& calibration, const Calibration& start, Context& c
 void report_direction(const Calibration& calibration, const Calibration& start, Context& context);
 
 /// The recordings, and each one's lags, for people and for programs.
-void report(const RecordingLags& lags, const PlateTrajectory& plate, Context& context);
+void report(const estimate::RecordingLags& lags, const PlateTrajectory& plate, Context& context);
 
 /// Reports the agreement of a recording's halves.
-void report(const std::optional<CrossValidation>& halves, Context& context);
+void report(const std::optional<estimate::CrossValidation>& halves, Context& context);
 
 /// How consistent the views are: all pairs for programs, the least consistent one for people.
-void report(const std::vector<ViewConsistency>& views, Context& context);
+void report(const std::vector<estimate::ViewConsistency>& views, Context& context);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

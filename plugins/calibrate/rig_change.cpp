@@ -13,8 +13,10 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/mirror_angle.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using data::kDegree;
 
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr std::array kTurns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
@@ -159,17 +161,17 @@ bool are_alike(const RigChange& one, const RigChange& other) {
   return (one.exchanged && other.exchanged) || (is_half_turn(one) && is_half_turn(other));
 }
 
-ChangedSample::ChangedSample(const Sample& sample, const RigChange& change)
+ChangedSample::ChangedSample(const estimate::Sample& sample, const RigChange& change)
     : sample_(sample), plate_(turned_by(*sample.plate, change.turn)) {
   for (std::size_t i = 0; i < sample_.beams.size(); ++i) {
     auto& laser = sample_.beams.laser[i];
     laser = laser_after(change, laser);
     const LaserChange& own = change.lasers[laser];
     float& angle = sample_.beams.mirror_angle[i];
-    angle = static_cast<float>(wrapped_mirror_angle(angle - own.mount_turn));
+    angle = static_cast<float>(data::wrapped_mirror_angle(angle - own.mount_turn));
     if (own.is_upside_down) angle = -angle;
   }
   sample_.plate = &plate_;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

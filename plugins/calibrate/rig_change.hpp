@@ -11,7 +11,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// A possible correction of one laser's entry in the rig.
 struct LaserChange {
@@ -57,16 +57,16 @@ bool are_alike(const RigChange& one, const RigChange& other);
 /// The data as they would be with the rig changed.
 class ChangedSample {
  public:
-  ChangedSample(const Sample& sample, const RigChange& change);
+  ChangedSample(const estimate::Sample& sample, const RigChange& change);
   ChangedSample(const ChangedSample&) = delete;
   ChangedSample& operator=(const ChangedSample&) = delete;
   ~ChangedSample() = default;
 
-  const Sample& sample() const { return sample_; }
+  const estimate::Sample& sample() const { return sample_; }
 
  private:
-  Sample sample_;
+  estimate::Sample sample_;
   PlateTrajectory plate_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -10,9 +10,10 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/shown_unit.hpp"
+#include "pipeline/estimate/outcome.hpp"
 #include "plugins/calibrate/rig_mistakes.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
@@ -35,7 +36,7 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
   const double off =
       is_angle ? std::remainder(found.value - nominal.value, kFullTurn) : found.value - nominal.value;
   if (limit.size == 0 || std::abs(off) <= limit.size) return;
-  const ShownUnit unit = shown_unit(nominal.unit);
+  const data::ShownUnit unit = data::shown_unit(nominal.unit);
   const std::string what =
       limit.option.empty() ? fmt::format("{} standard deviations", kReach) : limit.option;
   const std::string remedy =
@@ -49,7 +50,7 @@ void add_if_outside(const std::string& laser, const Parameter& found, const Para
 /// Pairs of lasers each of which has the other's nominal τ and not its own. In a wrong local minimum, τ alone
 /// shows that they are exchanged.
 std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& rig,
-                                          const ParameterPrior& range) {
+                                          const estimate::ParameterPrior& range) {
   const auto has_tau_of = [&](std::size_t laser, std::size_t other) {
     const Parameter& nominal = rig.lasers[other].nominal.tau;
     return std::abs(found.lasers[laser].tau.value - nominal.value) <= limit_of(nominal, range.tau).size;
@@ -58,7 +59,7 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
   for (std::size_t j = 1; j < found.lasers.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       if (has_tau_of(i, i) || has_tau_of(j, j) || !has_tau_of(i, j) || !has_tau_of(j, i)) continue;
-      const double mm = shown_unit("m").factor;
+      const double mm = data::shown_unit("m").factor;
       caveats.push_back(fmt::format(
           "{0}.tau is {1:.1f} mm and {2}.tau is {3:.1f} mm, but the rig's nominal values are {4:.1f} mm and {5:.1f} mm: {0} and {2} are probably exchanged. Exchange their addresses in the rig, and calibrate again",
           found.lasers[i].name, found.lasers[i].tau.value * mm, found.lasers[j].name,
@@ -72,16 +73,17 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
 /// λ without a standard deviation, which is searched around the whole circle.
 void add_if_elsewhere(const LaserCalibration& found, const Parameter& nominal,
                       std::vector<std::string>& caveats) {
-  constexpr double kFar = 45 * kDegree;  // three standard deviations of a rough value
+  constexpr double kFar = 45 * data::kDegree;  // three standard deviations of a rough value
   const double off = std::abs(std::remainder(found.lambda.value - nominal.value, kFullTurn));
   if (nominal.std_error > 0 || off < kFar + kReach * found.lambda.std_error) return;
   caveats.push_back(fmt::format(
       "{}.lambda is {:.1f} deg, {:.0f} deg from the rig's nominal {:.1f} deg: a laser has another's address, a nominal lambda is wrong, or the calibration is in a wrong local minimum. Check the addresses and each lambda in the rig, or give lambda an sd",
-      found.name, found.lambda.value / kDegree, off / kDegree, nominal.value / kDegree));
+      found.name, found.lambda.value / data::kDegree, off / data::kDegree, nominal.value / data::kDegree));
 }
 
 /// Each parameter that is farther from its nominal value than the rig or the search allows.
-std::vector<std::string> outside(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
+std::vector<std::string> outside(const Calibration& found, const Rig& rig,
+                                 const estimate::ParameterPrior& range) {
   std::vector<std::string> caveats = exchanged_by_tau(found, rig, range);
   for (std::size_t k = 0; k < found.lasers.size(); ++k) {
     const LaserCalibration& laser = found.lasers[k];
@@ -152,10 +154,11 @@ Calibration match_form_of_rig(Calibration calibration, const Rig& rig) {
   return calibration;
 }
 
-std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior) {
+std::vector<std::string> known_from_rig_only(const Calibration& calibration,
+                                             const estimate::ParameterPrior& prior) {
   constexpr double kAboutAll = 0.9;
   std::vector<std::string> names;
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& parameter) {
     const auto known = prior.nominal.find(name);
     if (known != prior.nominal.end() && parameter.free &&
         parameter.std_error > kAboutAll * known->second.std_error) {
@@ -169,7 +172,8 @@ std::vector<std::string> far_from_nominal(const Calibration& calibration, const 
   return outside(calibration, rig, {.tau = 0, .alpha = 0});
 }
 
-RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const ParameterPrior& range) {
+RigCheck check_with_rig(const Calibration& calibration, const Rig& rig,
+                        const estimate::ParameterPrior& range) {
   constexpr double kClearly = 12;  // a likelihood ratio of 400
   constexpr double kFits = 12;     // three values of a laser, each within two standard deviations
   const double as_it_is = distance_from_nominal(calibration, nominal_calibration(rig), range).sum;
@@ -203,7 +207,7 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const Pa
 std::optional<Calibration> in_direction_of_rig(const Calibration& calibration, const Rig& rig,
                                                const RigCheck& check) {
   if (rig.plate.direction != CountDirection::automatic || !check.is_mirrored) return std::nullopt;
-  Calibration turned = match_form_of_rig(with_angles_near(mirrored(calibration), rig), rig);
+  Calibration turned = match_form_of_rig(estimate::with_angles_near(mirrored(calibration), rig), rig);
   turned.provenance[kDirectionSource] = kFromRecording;
   return turned;
 }
@@ -220,4 +224,4 @@ void note_direction(Calibration& calibration, const Rig& rig, const RigCheck& ch
     calibration.provenance[kDirectionSource] = kFromRig;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -10,7 +10,7 @@
 
 #include "pipeline/estimate/parameter_prior.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// The calibration of the mirror image of the scene, which the same measurements fit as well if the encoder's
 /// counts are negated: by equation (2) λ → −λ + const, τ → −τ, α → −α for each laser. The first laser whose λ
@@ -40,7 +40,8 @@ struct RigCheck {
 ///
 /// @param calibration  one laser for each of the rig's, in its order
 /// @param range        [m, rad] how far τ and α may be from their nominal values
-RigCheck check_with_rig(const Calibration& calibration, const Rig& rig, const ParameterPrior& range);
+RigCheck check_with_rig(const Calibration& calibration, const Rig& rig,
+                        const estimate::ParameterPrior& range);
 
 /// The calibration's mirror image, in the form near the rig, if the rig leaves the encoder's direction to the
 /// calibration and the mirror image agrees with the rig. Otherwise nothing.
@@ -69,9 +70,10 @@ extern const std::string_view kDirectionIsOpen;
 bool leaves_direction_open(const Rig& rig, const RigCheck& check);
 
 /// The parameters whose standard error is about that which the rig gives them.
-std::vector<std::string> known_from_rig_only(const Calibration& calibration, const ParameterPrior& prior);
+std::vector<std::string> known_from_rig_only(const Calibration& calibration,
+                                             const estimate::ParameterPrior& prior);
 
 /// Caveats for parameters that are more than three of the rig's standard deviations from their nominal value.
 std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

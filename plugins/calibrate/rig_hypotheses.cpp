@@ -19,8 +19,10 @@
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_search.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Sample;
 
 constexpr std::size_t kBeams = 100'000;    // enough to see whether they fit
 constexpr std::size_t kOwnBeams = 15'000;  // of one laser, where all together are tried afterwards
@@ -35,22 +37,22 @@ double without_sign_of_zero(double value) { return std::abs(value) < 5e-4 ? 0 : 
 /// identifiable.
 std::vector<std::string> mount_terms(const Sample& sample, const Rig& rig) {
   std::vector<std::string> terms;
-  for (const auto& [laser, sweep] : mirror_sweeps(sample.beams)) {
-    if (sweep > kLeastSweep) terms.push_back(rig.lasers[laser].name + "." + kMirrorZero);
+  for (const auto& [laser, sweep] : estimate::mirror_sweeps(sample.beams)) {
+    if (sweep > estimate::kLeastSweep) terms.push_back(rig.lasers[laser].name + "." + kMirrorZero);
   }
   return terms;
 }
 
 /// A refinement with the mounts free; nothing if no surface is flat, or nothing is determined.
-std::optional<Refinement> refined_with_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
-                                              const HypothesisSettings& settings) {
+std::optional<estimate::Refinement> refined_with_mounts(const SensorModel& model, const Sample& sample,
+                                                        const Rig& rig, const HypothesisSettings& settings) {
   Calibration start = model.calibration();
-  RefinementSettings refinement = settings.refinement;
+  estimate::RefinementSettings refinement = settings.refinement;
   for (auto& term : mount_terms(sample, rig)) refinement.terms.push_back(std::move(term));
-  add_requested_terms(start, refinement.terms, *settings.terms);
+  estimate::add_requested_terms(start, refinement.terms, *settings.terms);
   try {
-    return refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
-                             [&](int) { return !settings.interrupted(); });
+    return estimate::refine_by_surfels(SensorModel(start, *settings.terms), sample, refinement,
+                                       [&](int) { return !settings.interrupted(); });
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -72,14 +74,14 @@ std::optional<std::string> caveat_of(const std::vector<RigChange>& fitting) {
 
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings) {
-  constexpr double kMin = 0.1 * kDegree;  // 2 mm a metre
-  constexpr double kClearly = 5;          // standard errors
+  constexpr double kMin = 0.1 * data::kDegree;  // 2 mm a metre
+  constexpr double kClearly = 5;                // standard errors
   std::vector<std::string> caveats;
-  const Sample some = thin_evenly(sample, kBeams, 1);
+  const Sample some = estimate::thin_evenly(sample, kBeams, 1);
   if (mount_terms(some, rig).empty()) return {};
   const auto refined = refined_with_mounts(model, some, rig, settings);
   if (settings.interrupted() || !refined || !refined->outcome.caveats.empty()) return {};
-  const Calibration found = calibration_of(refined->outcome, rig);
+  const Calibration found = estimate::calibration_of(refined->outcome, rig);
   const Calibration given = model.calibration();
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
     if (std::ranges::count(given.lasers[laser].terms, kMirrorZero, &TermParameters::term) > 0) continue;
@@ -90,18 +92,18 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
       const RigLaser& own = rig.lasers[laser];
       caveats.push_back(fmt::format(
           "{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the rig, or estimate it with calibrate.refine's terms: [{}]",
-          own.name, without_sign_of_zero((own.mount - zero.value) / kDegree), zero.std_error / kDegree,
-          own.mount / kDegree, kMirrorZero));
+          own.name, without_sign_of_zero((own.mount - zero.value) / data::kDegree),
+          zero.std_error / data::kDegree, own.mount / data::kDegree, kMirrorZero));
     }
   }
   return caveats;
 }
 
 RigErrorSearch::RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisSettings settings)
-    : sample_(thin_evenly(longest_recording(sample), kBeams, 1)),
+    : sample_(estimate::thin_evenly(estimate::longest_recording(sample), kBeams, 1)),
       rig_(rig),
       settings_(std::move(settings)),
-      period_(scene_repeat(sample)) {}
+      period_(estimate::scene_repeat(sample)) {}
 
 RigErrorSearch::Fit RigErrorSearch::fit_with(const RigChange& change, const Sample& sample) const {
   const ChangedSample changed(sample, change);
@@ -113,14 +115,15 @@ RigErrorSearch::Fit RigErrorSearch::fit_with(const RigChange& change, const Samp
   rqe.in_plane.minimizer.interrupted = settings.interrupted;
   try {
     const SensorModel start(nominal_calibration(rig_), *settings.terms);
-    rqe.in_plane.range = search_range_with_lambda(start, rig_, ParameterPrior{});
-    const Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
+    rqe.in_plane.range = search_range_with_lambda(start, rig_, estimate::ParameterPrior{});
+    const estimate::Outcome crisp = calibrate_by_rqe(start, changed.sample(), *settings.measure, rqe);
     if (settings.interrupted()) return {};
     const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig_, settings);
     if (!refined) return {};
     Fit fit{.beams = refined->beams};
     if (!refined->outcome.caveats.empty() || !agrees_well(*refined)) return fit;
-    const RigCheck check = check_with_rig(calibration_of(refined->outcome, rig_), rig_, ParameterPrior{});
+    const RigCheck check =
+        check_with_rig(estimate::calibration_of(refined->outcome, rig_), rig_, estimate::ParameterPrior{});
     fit.fits = check.caveats.empty();
     if (check.is_explained) fit.mistake = check.caveats.front();
     return fit;
@@ -137,7 +140,7 @@ const RigErrorSearch::Fit& RigErrorSearch::fit_of_rig() {
 std::optional<std::string> RigErrorSearch::counts() {
   constexpr double kResolved = 0.003;  // of a turn
   if (!period_) return std::nullopt;
-  if (contradicts_counts(*period_)) return counts_caveat(*period_);
+  if (estimate::contradicts_counts(*period_)) return estimate::counts_caveat(*period_);
   const double turns = period_->angle / (2 * std::numbers::pi);
   if (std::abs(turns - 1) <= kResolved) return std::nullopt;
   // A few thousandths change ranges by little, and a calibration adapts to them: with fewer beams.
@@ -149,7 +152,7 @@ std::optional<std::string> RigErrorSearch::counts() {
   const bool is_better =
       changed.fits && static_cast<double>(changed.beams) > kMore * static_cast<double>(unchanged.beams);
   if (!is_better) return std::nullopt;
-  return counts_caveat(*period_);
+  return estimate::counts_caveat(*period_);
 }
 
 bool RigErrorSearch::fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged) {
@@ -171,7 +174,7 @@ std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChang
 }
 
 std::vector<RigChange> RigErrorSearch::of_one(std::size_t laser) {
-  const Sample own = thin_evenly(of_laser(sample_, laser), kOwnBeams, 1);
+  const Sample own = estimate::thin_evenly(estimate::of_laser(sample_, laser), kOwnBeams, 1);
   if (own.beams.size() == 0) return {};
   const Fit unchanged = fit_with(no_change(rig_), own);
   if (unchanged.fits) return {};
@@ -217,4 +220,4 @@ std::optional<std::string> RigErrorSearch::any() {
   return caveat_of(found);
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

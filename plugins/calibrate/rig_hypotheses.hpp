@@ -14,13 +14,13 @@
 #include "plugins/calibrate/rig_change.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Settings for calibrating again under another assumption on the rig.
 struct HypothesisSettings {
   const TermRegistry* terms = nullptr;
   Measure* measure = nullptr;
-  RefinementSettings refinement;
+  estimate::RefinementSettings refinement;
   std::function<bool()> interrupted = [] { return false; };
   Reporter report;
 };
@@ -28,8 +28,8 @@ struct HypothesisSettings {
 /// Mounts that are off by little, as caveats: where `mount.mirror_zero` is clearly not 0 once it is free.
 ///
 /// @param model  a refined one; lasers whose mount it estimates are left out
-std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
-                                      const HypothesisSettings& settings);
+std::vector<std::string> check_mounts(const SensorModel& model, const estimate::Sample& sample,
+                                      const Rig& rig, const HypothesisSettings& settings);
 
 /// Search for the mistake in the rig that explains why a calibration does not fit.
 ///
@@ -38,7 +38,7 @@ std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sa
 /// than that of the rig as it stands.
 class RigErrorSearch {
  public:
-  RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisSettings settings);
+  RigErrorSearch(const estimate::Sample& sample, const Rig& rig, HypothesisSettings settings);
 
   /// Wrong counts a revolution, as a caveat: the scene repeats clearly better after another angle of the
   /// plate, or a little better, and with such counts a calibration fits with clearly more beams.
@@ -63,10 +63,10 @@ class RigErrorSearch {
     std::string mistake;    ///< the mistake in the nominal values that it shows, as a caveat
   };
 
-  Fit fit_with(const RigChange& change, const Sample& sample) const;
+  Fit fit_with(const RigChange& change, const estimate::Sample& sample) const;
   const Fit& fit_of_rig();
   /// Whether the data fit, with more beams than without the change.
-  bool fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged);
+  bool fits_with(const RigChange& change, const estimate::Sample& sample, const Fit& unchanged);
   /// The first change with which all data fit, and those like it.
   std::vector<RigChange> those_that_fit(const std::vector<RigChange>& changes);
   /// Changes of the plate.
@@ -78,12 +78,12 @@ class RigErrorSearch {
   /// Changes of the lasers that only all together show.
   std::vector<RigChange> of_all();
 
-  Sample sample_;
+  estimate::Sample sample_;
   const Rig& rig_;
   HypothesisSettings settings_;
-  std::optional<SceneRepeat> period_;
+  std::optional<estimate::SceneRepeat> period_;
   std::optional<Fit> fit_of_rig_;
   std::size_t step_ = 0;  ///< of any()
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

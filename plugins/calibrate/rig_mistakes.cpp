@@ -11,7 +11,7 @@
 #include "pipeline/data/degree.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -19,8 +19,8 @@ constexpr double kPi = std::numbers::pi;
 /// Standard deviations of one laser's nominal values: the rig's, or else half of a range. Nominal values of λ
 /// are not needed by the search, so that they may be rough.
 struct NominalErrors {
-  NominalErrors(const LaserCalibration& nominal, const ParameterPrior& range)
-      : lambda(nominal.lambda.std_error > 0 ? nominal.lambda.std_error : 15 * kDegree),
+  NominalErrors(const LaserCalibration& nominal, const estimate::ParameterPrior& range)
+      : lambda(nominal.lambda.std_error > 0 ? nominal.lambda.std_error : 15 * data::kDegree),
         tau(nominal.tau.std_error > 0 ? nominal.tau.std_error : range.tau / 2),
         alpha(nominal.alpha.std_error > 0 ? nominal.alpha.std_error : range.alpha / 2) {}
   double lambda, tau, alpha;
@@ -34,7 +34,7 @@ double square(double x) { return x * x; }
 ///
 /// @param turn  [rad] by which the calibration's frame is turned against the rig's
 double distance(const LaserCalibration& found, const LaserCalibration& nominal, double turn,
-                const ParameterPrior& range) {
+                const estimate::ParameterPrior& range) {
   const NominalErrors error(nominal, range);
   const auto at = [&](double lambda, double tau, double alpha) {
     return square(wrapped(lambda - nominal.lambda.value - turn) / error.lambda) +
@@ -59,7 +59,8 @@ RigMistake other_direction(const Calibration& calibration, const RigDistance& di
 }
 
 /// Azimuths that were counted the other way: the lasers' order is reversed, but each sits as it should.
-RigMistake other_sign_of_lambda(const Calibration& found, Calibration nominal, const ParameterPrior& range) {
+RigMistake other_sign_of_lambda(const Calibration& found, Calibration nominal,
+                                const estimate::ParameterPrior& range) {
   for (LaserCalibration& laser : nominal.lasers) laser.lambda.value = -laser.lambda.value;
   return {
       .statement = "each lambda has the other sign: the rig counts the lasers' azimuths clockwise",
@@ -72,7 +73,7 @@ RigMistake other_sign_of_lambda(const Calibration& found, Calibration nominal, c
 }  // namespace
 
 RigDistance distance_from_nominal(const Calibration& found, const Calibration& nominal,
-                                  const ParameterPrior& range) {
+                                  const estimate::ParameterPrior& range) {
   RigDistance least;
   for (std::size_t reference = 0; reference < found.lasers.size(); ++reference) {
     for (const double half_turn : {0.0, kPi}) {
@@ -90,7 +91,8 @@ RigDistance distance_from_nominal(const Calibration& found, const Calibration& n
   return least;
 }
 
-std::vector<RigMistake> rig_mistakes(const Calibration& found, const Rig& rig, const ParameterPrior& range) {
+std::vector<RigMistake> rig_mistakes(const Calibration& found, const Rig& rig,
+                                     const estimate::ParameterPrior& range) {
   const Calibration nominal = nominal_calibration(rig);
   std::vector<RigMistake> all = {
       other_direction(found, distance_from_nominal(mirrored(found), nominal, range))};
@@ -138,4 +140,4 @@ std::string caveat_of(const std::vector<RigMistake>& alternatives) {
               : ". Find out on the scanner which one is true: a wrong correction gives a mirror image of the scene");
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -9,7 +9,7 @@
 
 #include "pipeline/estimate/parameter_prior.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Squared distance of a calibration from nominal values, in their standard deviations.
 struct RigDistance {
@@ -21,7 +21,7 @@ struct RigDistance {
 ///
 /// @param range  [m, rad] of τ and α; half of it is the standard deviation of those that have none in the rig
 RigDistance distance_from_nominal(const Calibration& found, const Calibration& nominal,
-                                  const ParameterPrior& range);
+                                  const estimate::ParameterPrior& range);
 
 /// A usual mistake of a rig, with the calibration's distance from the nominal values without it.
 struct RigMistake {
@@ -35,10 +35,11 @@ struct RigMistake {
 
 /// The usual mistakes of a rig: the encoder's direction (the first), lasers upside down, two exchanged ones,
 /// azimuths of the other sign.
-std::vector<RigMistake> rig_mistakes(const Calibration& found, const Rig& rig, const ParameterPrior& range);
+std::vector<RigMistake> rig_mistakes(const Calibration& found, const Rig& rig,
+                                     const estimate::ParameterPrior& range);
 
 /// What is wrong in the rig, and what to change. Several alternatives, the likeliest first: the nominal
 /// values do not decide between them.
 std::string caveat_of(const std::vector<RigMistake>& alternatives);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -15,17 +15,21 @@
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Outcome;
+using estimate::ParameterPrior;
 
 /// [nat] In ordinary rooms the next local minimum is 0.3 to 0.5 above the optimum.
 constexpr double kClearlyCrisper = 0.1;
 
-constexpr double kDeviations = 3;              // [standard deviations] of a nominal value: the search range
-constexpr double kUsualLambda = 20 * kDegree;  // within which nominal λ are, unless the rig is wrong
+constexpr double kDeviations = 3;  // [standard deviations] of a nominal value: the search range
+constexpr double kUsualLambda = 20 * data::kDegree;  // within which nominal λ are, unless the rig is wrong
 
 double off(const Outcome& outcome, const ParameterPrior& range, std::size_t parameter) {
-  return std::abs(picked(outcome.model, {parameter})[0] - centres_of(range, outcome.model, {parameter})[0]);
+  return std::abs(estimate::picked(outcome.model, {parameter})[0] -
+                  estimate::centres_of(range, outcome.model, {parameter})[0]);
 }
 
 /// Whether a parameter ended where its range ends, η apart.
@@ -33,7 +37,7 @@ bool is_at_limit(const Outcome& outcome, const ParameterPrior& range) {
   constexpr double kNear = 0.99;
   return std::ranges::any_of(outcome.free, [&](std::size_t parameter) {
     return range.nominal.contains(outcome.model.names()[parameter]) &&
-           off(outcome, range, parameter) > kNear * ranges_of(range, outcome.model, {parameter})[0];
+           off(outcome, range, parameter) > kNear * estimate::ranges_of(range, outcome.model, {parameter})[0];
   });
 }
 
@@ -47,14 +51,14 @@ bool has_moved_lambda(const Outcome& outcome, const ParameterPrior& near) {
 
 /// The outcome refined, with enough beams to see whether it fits; nothing if nothing is flat there, or
 /// nothing is determined.
-std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, const Rig& rig,
-                                  const std::function<bool()>& interrupted) {
+std::optional<estimate::Refinement> refined(const Outcome& outcome, const estimate::Sample& sample,
+                                            const Rig& rig, const std::function<bool()>& interrupted) {
   constexpr std::size_t kBeams = 200'000;
-  RefinementSettings settings;
-  settings.prior.nominal = nominal_values(rig);
+  estimate::RefinementSettings settings;
+  settings.prior.nominal = estimate::nominal_values(rig);
   try {
-    return refine_by_surfels(outcome.model, thin_evenly(sample, kBeams, 1), settings,
-                             [&](int) { return !interrupted(); });
+    return estimate::refine_by_surfels(outcome.model, estimate::thin_evenly(sample, kBeams, 1), settings,
+                                       [&](int) { return !interrupted(); });
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -64,13 +68,15 @@ std::optional<Refinement> refined(const Outcome& outcome, const Sample& sample, 
 
 ParameterPrior search_range_around(const SensorModel& start, const Rig& rig, ParameterPrior range) {
   range.reach = kDeviations;
-  range.nominal = nominal_values(rig);
+  range.nominal = estimate::nominal_values(rig);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
-    for (const auto& [kind, reach] : {std::pair{kTau, range.tau}, std::pair{kAlpha, range.alpha}}) {
-      const std::size_t parameter = slot(start, laser, kind);
-      range.nominal.try_emplace(start.names()[parameter],
-                                NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
-                                             .std_error = reach / kDeviations});
+    for (const auto& [kind, reach] :
+         {std::pair{estimate::kTau, range.tau}, std::pair{estimate::kAlpha, range.alpha}}) {
+      const std::size_t parameter = estimate::slot(start, laser, kind);
+      range.nominal.try_emplace(
+          start.names()[parameter],
+          estimate::NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
+                                 .std_error = reach / kDeviations});
     }
   }
   return range;
@@ -80,15 +86,16 @@ ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig
                                         const ParameterPrior& given) {
   ParameterPrior range = search_range_around(start, rig, given);
   for (std::size_t laser = 0; laser < start.lasers(); ++laser) {
-    const std::size_t parameter = slot(start, laser, kLambda);
-    range.nominal.try_emplace(start.names()[parameter],
-                              NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
-                                           .std_error = kUsualLambda / kDeviations});
+    const std::size_t parameter = estimate::slot(start, laser, estimate::kLambda);
+    range.nominal.try_emplace(
+        start.names()[parameter],
+        estimate::NominalValue{.value = start.values()[static_cast<Eigen::Index>(parameter)],
+                               .std_error = kUsualLambda / kDeviations});
   }
   return range;
 }
 
-Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measure& measure,
+Outcome search_around_rig(const SensorModel& start, const estimate::Sample& sample, Measure& measure,
                           RqeCalibrationSettings settings, const Rig& rig, const Reporter& report) {
   constexpr double kMore = 1.2;
   const ParameterPrior given = settings.in_plane.range;
@@ -102,14 +109,14 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
   };
   const ParameterPrior near = search_range_around(start, rig, given);
   const ParameterPrior nearest = search_range_with_lambda(start, rig, given);
-  const auto fits = [&](const std::optional<Refinement>& fit) {
+  const auto fits = [&](const std::optional<estimate::Refinement>& fit) {
     return fit && fit->outcome.caveats.empty() && (fit->views.empty() || agrees_well(*fit)) &&
-           check_with_rig(calibration_of(fit->outcome, rig), rig, given).caveats.empty();
+           check_with_rig(estimate::calibration_of(fit->outcome, rig), rig, given).caveats.empty();
   };
   Outcome here = calibrated(near, 0, 0.5);
   const bool ends_here = is_at_limit(here, near);
   const bool moved = has_moved_lambda(here, nearest);
-  if (interrupted() || (!ends_here && !moved && nominal_values(rig).empty())) return here;
+  if (interrupted() || (!ends_here && !moved && estimate::nominal_values(rig).empty())) return here;
   if (moved) {  // in a corridor both ways round fit
     Outcome nearer = calibrated(nearest, 0.5, 0.1);
     if (interrupted() || fits(refined(nearer, sample, rig, interrupted))) return nearer;
@@ -124,13 +131,13 @@ Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measur
       rqe_of({anywhere.model, here.model}, sample, {.sigma = sigma, .points = settings.points}, measure);
   const double clearly = ends_here ? 0 : kClearlyCrisper;
   if (interrupted() || rqe[0] + clearly > rqe[1]) return here;
-  if (check_with_rig(calibration_of(anywhere, rig), rig, given).is_explained) return anywhere;
+  if (check_with_rig(estimate::calibration_of(anywhere, rig), rig, given).is_explained) return anywhere;
   report(0.95, "flat surfaces");
   const auto other = refined(anywhere, sample, rig, interrupted);
-  const auto beams_of = [](const std::optional<Refinement>& refinement) {
+  const auto beams_of = [](const std::optional<estimate::Refinement>& refinement) {
     return refinement ? static_cast<double>(refinement->beams) : 0.0;
   };
   return beams_of(other) > kMore * beams_of(fit) ? std::move(anywhere) : std::move(here);
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

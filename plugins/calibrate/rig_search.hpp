@@ -5,15 +5,16 @@
 
 #include "plugins/calibrate/rqe_calibration.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// The range with those of τ and α around the start, and what the rig knows better: three standard
 /// deviations.
-ParameterPrior search_range_around(const SensorModel& start, const Rig& rig, ParameterPrior range);
+estimate::ParameterPrior search_range_around(const SensorModel& start, const Rig& rig,
+                                             estimate::ParameterPrior range);
 
 /// The same with each λ within 20° of the start, too.
-ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig,
-                                        const ParameterPrior& given);
+estimate::ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig,
+                                                  const estimate::ParameterPrior& given);
 
 /// Minimizes RQE near the rig's nominal values; or away from them, where that shows that the rig is wrong.
 ///
@@ -29,7 +30,8 @@ ParameterPrior search_range_with_lambda(const SensorModel& start, const Rig& rig
 /// @param start     where to start
 /// @param settings  `in_plane.range` limits the distance of τ and α from the start
 /// @throws Error    as calibrate_by_rqe()
-Outcome search_around_rig(const SensorModel& start, const Sample& sample, Measure& measure,
-                          RqeCalibrationSettings settings, const Rig& rig, const Reporter& report);
+estimate::Outcome search_around_rig(const SensorModel& start, const estimate::Sample& sample,
+                                    Measure& measure, RqeCalibrationSettings settings, const Rig& rig,
+                                    const Reporter& report);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -21,27 +21,29 @@
 #include "plugins/calibrate/rqe_minimizer.hpp"
 #include "plugins/calibrate/sandwich_covariance.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Sample;
 
 constexpr const char* kSingleSpots =
     "the beams have few directions only, since the rates of the plate and the mirrors are commensurate: walls appear as separate spots, whose RQE does not determine a calibration. Record at another rate, or with a changing one";
 
 void refuse_a_standing_plate(const PlateTrajectory& plate) {
-  constexpr double kMin = 1 * kDegree;
+  constexpr double kMin = 1 * data::kDegree;
   const auto [low, high] = std::ranges::minmax(plate.angles());
   if (high - low >= kMin) return;
   throw Error("the plate is stationary in these data: no surface is seen twice", "record while it turns");
 }
 
 /// @param inside  those of the beams that are covered at all the lags of the search
-void refuse_a_short_recording(const Sample& all, const Sample& inside, const LagRange& lag,
+void refuse_a_short_recording(const Sample& all, const Sample& inside, const estimate::LagRange& lag,
                               double half_width) {
-  if (covered(all, 0, 0).beams.size() == 0) {
+  if (estimate::covered(all, 0, 0).beams.size() == 0) {
     throw Error("the encoder readings cover none of the beams",
                 "check by crisp info that the plate's sentences are in the capture");
   }
-  const Sample front = in_plane(inside, half_width, Half::kFront);
+  const Sample front = in_plane(inside, half_width, estimate::Half::kFront);
   std::map<std::uint16_t, std::size_t> scans;
   for (const auto laser : front.beams.laser) ++scans[laser];
   const auto enough = [](const auto& laser) { return laser.second >= kFewBeams; };
@@ -64,8 +66,9 @@ class RqeCalibration {
         report_(report),
         model_(start),
         sample_(with_margin(start, sample, settings_.in_plane)),
-        parameters_(identifiable_parameters(free_parameters(start, sample.beams, settings.fixed), start,
-                                            sample_, settings.in_plane.range)) {
+        parameters_(
+            estimate::identifiable_parameters(estimate::free_parameters(start, sample.beams, settings.fixed),
+                                              start, sample_, settings.in_plane.range)) {
     keep_where_one_side_is_seen();
     if (parameters_.free.empty()) {
       throw Error("these data leave no parameter to calibrate",
@@ -73,7 +76,7 @@ class RqeCalibration {
     }
   }
 
-  Outcome run() {
+  estimate::Outcome run() {
     const SensorModel start = model_;
     Eigen::MatrixXd covariance;
     while (!parameters_.free.empty()) {
@@ -100,13 +103,14 @@ class RqeCalibration {
   Sample minimize() {
     in_plane();
     if (settings_.full_field) return full_field_from_each_minimum();
-    return crisp::in_plane(sample_, settings_.in_plane.half_width, Half::kBoth);
+    return estimate::in_plane(sample_, settings_.in_plane.half_width, estimate::Half::kBoth);
   }
 
   /// Holds the parameters that are less well determined than by their ranges; whether there were any.
   bool hold_unobservable(const Eigen::MatrixXd& covariance) {
-    auto known = observability(inverse(covariance), parameters_.free, model_.names(),
-                               ranges_of(settings_.in_plane.range, model_, parameters_.free));
+    auto known =
+        estimate::observability(statistics::inverse(covariance), parameters_.free, model_.names(),
+                                estimate::ranges_of(settings_.in_plane.range, model_, parameters_.free));
     parameters_.free = std::move(known.known);
     parameters_.unobservable.insert(parameters_.unobservable.end(), known.unobservable.begin(),
                                     known.unobservable.end());
@@ -115,11 +119,11 @@ class RqeCalibration {
 
   /// The beams that encoder readings cover at every η of the search; sets the range's ends.
   static Sample with_margin(const SensorModel& start, const Sample& sample, InPlaneSettings& settings) {
-    ParameterPrior& range = settings.range;
-    const LagRange lag = lag_range(start, range.eta);
+    estimate::ParameterPrior& range = settings.range;
+    const estimate::LagRange lag = estimate::lag_range(start, range.eta);
     range.earliest_eta = lag.earliest;
     range.latest_eta = lag.latest;
-    Sample inside = covered(sample, lag.earliest, lag.latest);
+    Sample inside = estimate::covered(sample, lag.earliest, lag.latest);
     refuse_a_short_recording(sample, inside, lag, settings.half_width);
     refuse_a_standing_plate(*inside.plate);
     return inside;
@@ -131,14 +135,14 @@ class RqeCalibration {
   /// @throws Error  if counts that are wrong are the reason
   bool hold_lags_without_minimum() {
     const auto has_no_minimum = [&](std::size_t parameter) {
-      return is_at_the_end(settings_.in_plane.range, model_.names()[parameter],
-                           model_.values()[static_cast<Eigen::Index>(parameter)]);
+      return estimate::is_at_the_end(settings_.in_plane.range, model_.names()[parameter],
+                                     model_.values()[static_cast<Eigen::Index>(parameter)]);
     };
     const std::size_t before = not_estimated_.size();
     std::ranges::copy_if(parameters_.free, std::back_inserter(not_estimated_), has_no_minimum);
     if (not_estimated_.size() == before) return false;
-    const auto period = scene_repeat(sample_);
-    if (period && contradicts_counts(*period)) throw Error(counts_caveat(*period));
+    const auto period = estimate::scene_repeat(sample_);
+    if (period && estimate::contradicts_counts(*period)) throw Error(estimate::counts_caveat(*period));
     std::erase_if(parameters_.free, has_no_minimum);
     return true;
   }
@@ -149,14 +153,14 @@ class RqeCalibration {
   void keep_where_one_side_is_seen() {
     constexpr double kMinShare = 0.15;
     for (std::size_t laser = 0; laser < model_.lasers(); ++laser) {
-      const Sample own = of_laser(sample_, laser);
+      const Sample own = estimate::of_laser(sample_, laser);
       const auto left = static_cast<double>(
           std::ranges::count_if(own.beams.mirror_angle, [](float theta) { return theta < 0; }));
       const auto all = static_cast<double>(own.beams.size());
       if (std::min(left, all - left) >= kMinShare * all) continue;
-      for (const BaseSlot which : {kTau, kAlpha}) {
-        if (std::erase(parameters_.free, slot(model_, laser, which)) > 0) {
-          not_estimated_.push_back(slot(model_, laser, which));
+      for (const estimate::BaseSlot which : {estimate::kTau, estimate::kAlpha}) {
+        if (std::erase(parameters_.free, estimate::slot(model_, laser, which)) > 0) {
+          not_estimated_.push_back(estimate::slot(model_, laser, which));
         }
       }
     }
@@ -177,7 +181,8 @@ class RqeCalibration {
     for (std::size_t k = 0; k < sigmas.size(); ++k) {
       report(0.25 + 0.55 * static_cast<double>(k) / static_cast<double>(sigmas.size()),
              fmt::format("sigma {:.2g} cm", sigmas[k] * 100));
-      thin = thin_by_area(sample_, model_, beams_for(sigmas[k], settings_.points), settings_.seed);
+      thin = estimate::thin_by_area(sample_, model_, estimate::beams_for(sigmas[k], settings_.points),
+                                    settings_.seed);
       const MinimizerSettings& minimizer = settings_.in_plane.minimizer;
       minimize_rqe(model_, thin, parameters_.free, measure_, sigmas[k], settings_.in_plane.range,
                    k + 1 < sigmas.size() ? rough(minimizer) : minimizer);
@@ -195,7 +200,7 @@ class RqeCalibration {
     Sample used = full_field();
     for (CompetingMinimum& competitor : competitors_) {
       const SensorModel best = model_;
-      model_ = with_one(in_plane_optimum, competitor.parameter, competitor.at);
+      model_ = estimate::with_one(in_plane_optimum, competitor.parameter, competitor.at);
       std::vector<std::size_t> others = parameters_.free;  // lags as they were found
       std::erase_if(others, [&](std::size_t parameter) {
         return parameter == competitor.parameter || model_.names()[parameter].ends_with(".eta");
@@ -263,7 +268,7 @@ class RqeCalibration {
 
   std::string in_words(const CompetingMinimum& competitor) const {
     const std::string& name = model_.names()[competitor.parameter];
-    const ShownUnit unit = shown_unit(name.ends_with(".eta") ? "s" : "rad");
+    const data::ShownUnit unit = data::shown_unit(name.ends_with(".eta") ? "s" : "rad");
     const double here = model_.values()[static_cast<Eigen::Index>(competitor.parameter)];
     return fmt::format(
         "{} has a competing minimum at {:.4g} {}, next to {:.4g} {}, whose RQE{} differs by {:.3f} nat only: change the plate's rate more, record longer, or give {} with its sd in the rig",
@@ -277,15 +282,15 @@ class RqeCalibration {
   SensorModel model_;
   std::vector<CompetingMinimum> competitors_;
   Sample sample_;
-  FreeParameters parameters_;
+  estimate::FreeParameters parameters_;
   std::vector<std::size_t> not_estimated_;
 };
 
 }  // namespace
 
-Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
-                         const RqeCalibrationSettings& settings, const Reporter& report) {
+estimate::Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
+                                   const RqeCalibrationSettings& settings, const Reporter& report) {
   return RqeCalibration(start, sample, measure, settings, report).run();
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

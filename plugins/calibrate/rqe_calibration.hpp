@@ -9,7 +9,7 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "plugins/calibrate/in_plane_calibration.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 struct RqeCalibrationSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
@@ -35,7 +35,7 @@ using Reporter = std::function<void(double done, std::string_view what)>;
 /// @param start   where to start; λ of all but the first laser may be anywhere
 /// @param sample  all beams; need not be covered
 /// @throws Error  if no parameter is free
-Outcome calibrate_by_rqe(const SensorModel& start, const Sample& sample, Measure& measure,
-                         const RqeCalibrationSettings& settings, const Reporter& report = {});
+estimate::Outcome calibrate_by_rqe(const SensorModel& start, const estimate::Sample& sample, Measure& measure,
+                                   const RqeCalibrationSettings& settings, const Reporter& report = {});
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

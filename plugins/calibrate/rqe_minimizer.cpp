@@ -8,7 +8,7 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 /// Columns that each displace the points by `step`.
@@ -18,7 +18,7 @@ Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::Vect
       displacement.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(1e-3 * step * range.cwiseInverse());
   const Eigen::MatrixXd scaled =
       size.cwiseInverse().asDiagonal() * displacement * size.cwiseInverse().asDiagonal();
-  const SymmetricEigen eigen = eigendecomposition(scaled);
+  const statistics::SymmetricEigen eigen = statistics::eigendecomposition(scaled);
   const Eigen::VectorXd length = eigen.values.cwiseMax(kUnseen).cwiseSqrt();
   return step * (size.cwiseInverse().asDiagonal() * eigen.vectors * length.cwiseInverse().asDiagonal());
 }
@@ -26,7 +26,7 @@ Eigen::MatrixXd whitening(const Eigen::MatrixXd& displacement, const Eigen::Vect
 /// From step to step η may move on by its range, but not to where the encoder readings no longer cover the
 /// beams.
 void keep_covered(Box& box, const SensorModel& model, const std::vector<std::size_t>& free,
-                  const ParameterPrior& range) {
+                  const estimate::ParameterPrior& range) {
   for (std::size_t i = 0; i < free.size(); ++i) {
     if (!model.names()[free[i]].ends_with(".eta")) continue;
     for (double* end : {&box.lower[static_cast<Eigen::Index>(i)], &box.upper[static_cast<Eigen::Index>(i)]}) {
@@ -37,29 +37,30 @@ void keep_covered(Box& box, const SensorModel& model, const std::vector<std::siz
 
 }  // namespace
 
-Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
-                             const std::vector<std::size_t>& free, const ParameterPrior& range,
+Eigen::MatrixXd search_basis(const SensorModel& model, const estimate::Sample& sample,
+                             const std::vector<std::size_t>& free, const estimate::ParameterPrior& range,
                              double scale) {
-  return whitening(displacement(model, sample, free), ranges_of(range, model, free), scale);
+  return whitening(estimate::displacement(model, sample, free), estimate::ranges_of(range, model, free),
+                   scale);
 }
 
-Minimum minimize_rqe(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
-                     Measure& measure, double scale, const ParameterPrior& range,
+Minimum minimize_rqe(SensorModel& model, const estimate::Sample& sample, const std::vector<std::size_t>& free,
+                     Measure& measure, double scale, const estimate::ParameterPrior& range,
                      const MinimizerSettings& settings) {
-  const Eigen::VectorXd start = picked(model, free);
-  const Eigen::VectorXd ranges = ranges_of(range, model, free);
-  const Eigen::VectorXd centres = centres_of(range, model, free);
+  const Eigen::VectorXd start = estimate::picked(model, free);
+  const Eigen::VectorXd ranges = estimate::ranges_of(range, model, free);
+  const Eigen::VectorXd centres = estimate::centres_of(range, model, free);
   Box box{.lower = centres - ranges,
           .upper = centres + ranges,
           .basis = search_basis(model, sample, free, range, scale)};
   keep_covered(box, model, free, range);
   const Objective objective = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-    const auto quality = model_quality(with(model, free, x), sample, free, measure, scale);
+    const auto quality = model_quality(estimate::with(model, free, x), sample, free, measure, scale);
     if (gradient) *gradient = quality.gradient;
     return quality.value;
   };
   Minimum minimum = minimize(objective, start, box, settings);
-  model = with(model, free, minimum.x);
+  model = estimate::with(model, free, minimum.x);
   return minimum;
 }
 
@@ -79,4 +80,4 @@ std::vector<double> annealing(double from, double to) {
   return sigmas;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

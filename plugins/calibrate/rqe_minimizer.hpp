@@ -11,19 +11,20 @@
 #include "pipeline/estimate/sample.hpp"
 #include "plugins/calibrate/ipopt_minimizer.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// A basis of the free parameters, one direction a column, in which a unit step moves the sample's points by
 /// `scale` [m], in the root mean square and apart from rigid motions.
-Eigen::MatrixXd search_basis(const SensorModel& model, const Sample& sample,
-                             const std::vector<std::size_t>& free, const ParameterPrior& range, double scale);
+Eigen::MatrixXd search_basis(const SensorModel& model, const estimate::Sample& sample,
+                             const std::vector<std::size_t>& free, const estimate::ParameterPrior& range,
+                             double scale);
 
 /// Minimizes the RQE of the sample's cloud over the free parameters at one scale, and leaves the model there.
 ///
 /// Works in search_basis(): without it λ against α (which differ by τ only) is an ill-conditioned direction
 /// in which a search converges slowly.
-Minimum minimize_rqe(SensorModel& model, const Sample& sample, const std::vector<std::size_t>& free,
-                     Measure& measure, double scale, const ParameterPrior& range,
+Minimum minimize_rqe(SensorModel& model, const estimate::Sample& sample, const std::vector<std::size_t>& free,
+                     Measure& measure, double scale, const estimate::ParameterPrior& range,
                      const MinimizerSettings& settings);
 
 /// The same, ending earlier: for a kernel from whose optimum a narrower one goes on.
@@ -32,4 +33,4 @@ MinimizerSettings rough(MinimizerSettings settings);
 /// σ from wide to narrow, by a constant factor of about 0.6.
 std::vector<double> annealing(double from, double to);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -17,7 +17,7 @@
 #include "plugins/calibrate/rig_search.hpp"
 #include "plugins/calibrate/single_beam_refusal.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 void report_held(const std::vector<std::string>& names, std::string_view why, Context& context) {
@@ -27,7 +27,7 @@ void report_held(const std::vector<std::string>& names, std::string_view why, Co
                             names.size() == 1 ? "it" : "them", names.size() == 1 ? "it" : "them"));
 }
 
-void report_not_estimated(const Outcome& outcome, Context& context) {
+void report_not_estimated(const estimate::Outcome& outcome, Context& context) {
   std::vector<std::string> lags;
   std::vector<std::string> poses;
   for (const std::size_t parameter : outcome.not_estimated) {
@@ -67,17 +67,20 @@ void RqeStage::describe(StageDescription<RqeStage>& d) {
   d.option("points", &RqeStage::settings_, &RqeCalibrationSettings::points,
            "approximate number of points used, sampled evenly over the surfaces")
       .range(1000, 1e7);
-  d.option("lambda_range", &RqeStage::range_, &ParameterPrior::lambda,
+  d.option("lambda_range", &RqeStage::range_, &estimate::ParameterPrior::lambda,
            "search range of lambda in one step; its start does not matter")
       .unit("rad")
       .range(1e-6, 3.2);
-  d.option("tau_range", &RqeStage::range_, &ParameterPrior::tau, "search range of tau around its start")
+  d.option("tau_range", &RqeStage::range_, &estimate::ParameterPrior::tau,
+           "search range of tau around its start")
       .unit("m")
       .range(1e-6, 10);
-  d.option("alpha_range", &RqeStage::range_, &ParameterPrior::alpha, "search range of alpha around its start")
+  d.option("alpha_range", &RqeStage::range_, &estimate::ParameterPrior::alpha,
+           "search range of alpha around its start")
       .unit("rad")
       .range(1e-6, 1.5);
-  d.option("eta_range", &RqeStage::range_, &ParameterPrior::eta, "search range of eta around its start")
+  d.option("eta_range", &RqeStage::range_, &estimate::ParameterPrior::eta,
+           "search range of eta around its start")
       .unit("s")
       .range(1e-6, 1);
   d.option("fixed", &RqeStage::settings_, &RqeCalibrationSettings::fixed,
@@ -107,7 +110,7 @@ void RqeStage::check(const RunSettings& run) const {
     });
   };
   check_all(narrows(sigma_, "sigma"), narrows(in_plane_sigma_, "in_plane_sigma"),
-            of_option("fixed", [&] { check_fixed(settings_.fixed, nominal_calibration(run.rig)); }),
+            of_option("fixed", [&] { estimate::check_fixed(settings_.fixed, nominal_calibration(run.rig)); }),
             of_option("measure", [&] { make_measure(run); }));
 }
 
@@ -141,7 +144,7 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
 }
 
 void RqeStage::finish(Outputs& out, Context& context) {
-  const Sample sample = longest_recording(collected_.sample());
+  const estimate::Sample sample = estimate::longest_recording(collected_.sample());
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   RqeCalibrationSettings settings = settings_;
   settings.sigma_from = sigma_[0];
@@ -155,14 +158,14 @@ void RqeStage::finish(Outputs& out, Context& context) {
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration start = start_ ? *start_ : nominal_calibration(context.rig());
   refuse_single_beams(sample.beams, start, settings_.fixed);
-  const Outcome outcome =
+  const estimate::Outcome outcome =
       search_around_rig(SensorModel(start, terms), sample, *measure, settings, context.rig(),
                         [&](double done, std::string_view what) { context.progress(done, what); });
   if (context.interrupted()) return;
 
   for (const auto& caveat : outcome.caveats) context.mark_untrusted(caveat);
   for (const auto& minimum : outcome.other_minima) context.mark_untrusted(minimum);
-  Calibration calibration = calibration_of(outcome, context.rig());
+  Calibration calibration = estimate::calibration_of(outcome, context.rig());
   calibration.caveats = outcome.caveats;  // of the data: no refinement answers them
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
   const auto rqe = rqe_of({outcome.model, SensorModel(start, terms)}, sample,
@@ -183,4 +186,4 @@ void RqeStage::finish(Outputs& out, Context& context) {
   out.give(std::move(calibration));
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -11,7 +11,7 @@
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "plugins/calibrate/rqe_calibration.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Calibrates by making the cloud as crisp as it can be.
 class RqeStage final : public Stage {
@@ -28,14 +28,14 @@ class RqeStage final : public Stage {
   Calibration compared_with_rig(Calibration calibration, Context& context) const;
 
   RqeCalibrationSettings settings_;
-  ParameterPrior range_;
+  estimate::ParameterPrior range_;
   std::vector<double> sigma_{0.2, 0.05};
   std::vector<double> in_plane_sigma_{0.5, 0.1};
   std::string measure_ = "rqe";
   MeasureSettings measure_settings_{.search = "grid", .cutoff = 5};
-  OrientedPlate oriented_;
-  MeasurementBuffer collected_;
+  data::OrientedPlate oriented_;
+  estimate::MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

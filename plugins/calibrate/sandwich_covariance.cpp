@@ -7,8 +7,10 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Sample;
 
 /// The measure's gradient in the coordinates of a basis.
 class Gradient {
@@ -18,7 +20,7 @@ class Gradient {
       : model_(model), free_(free), measure_(measure), scale_(scale), basis_(basis) {}
 
   Eigen::VectorXd at(const Eigen::VectorXd& step, const Sample& sample) {
-    const SensorModel moved = with(model_, free_, picked(model_, free_) + basis_ * step);
+    const SensorModel moved = estimate::with(model_, free_, estimate::picked(model_, free_) + basis_ * step);
     return basis_.transpose() * model_quality(moved, sample, free_, measure_, scale_).gradient;
   }
 
@@ -71,15 +73,15 @@ Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& samp
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd basis = search_basis(model, sample, free, settings.range, settings.scale);
   Gradient gradient(model, free, measure, settings.scale, basis);
-  const SymmetricEigen curvature = eigendecomposition(hessian(gradient, m, sample));
+  const statistics::SymmetricEigen curvature = statistics::eigendecomposition(hessian(gradient, m, sample));
   // A flat measure, or no minimum, determines nothing: an error far beyond the range.
   const double flat = 1e-9 * std::max(1e-300, curvature.values.cwiseAbs().maxCoeff());
   const Eigen::VectorXd inverse = curvature.values.cwiseMax(flat).cwiseInverse();
   const Eigen::MatrixXd influence = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose();
   const Eigen::MatrixXd spread = gradient_covariance(gradient, m, sample, settings);
   const Eigen::MatrixXd scatter = basis * influence * spread * influence * basis.transpose();
-  const Eigen::VectorXd least = 1e-12 * ranges_of(settings.range, model, free).cwiseAbs2();
+  const Eigen::VectorXd least = 1e-12 * estimate::ranges_of(settings.range, model, free).cwiseAbs2();
   return (scatter + scatter.transpose()) / 2 + Eigen::MatrixXd(least.asDiagonal());
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

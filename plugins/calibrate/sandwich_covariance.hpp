@@ -7,14 +7,14 @@
 
 #include "plugins/calibrate/rqe_minimizer.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 struct SandwichSettings {
   double scale = 0.05;      ///< [m] the measure's
   double noise = 0.012;     ///< [m] standard deviation of a range
   std::size_t probes = 32;  ///< the standard errors are known to 1/√(2 · probes) of themselves
   std::uint64_t seed = 1;
-  ParameterPrior range;  ///< a parameter's standard error is at most of this size
+  estimate::ParameterPrior range;  ///< a parameter's standard error is at most of this size
 };
 
 /// Sandwich covariance of a measure's optimum under the noise of the ranges: H⁻¹ B H⁻¹, where H is the
@@ -23,8 +23,8 @@ struct SandwichSettings {
 ///
 /// @param model  at the optimum
 /// @return m × m, positive definite, in the order of `free`
-Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
+Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const estimate::Sample& sample,
                                     const std::vector<std::size_t>& free, Measure& measure,
                                     const SandwichSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

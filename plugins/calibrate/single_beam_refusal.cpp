@@ -12,7 +12,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 /// The mirror angles of one laser's beams [rad].
@@ -50,7 +50,7 @@ void refuse_single_beams(const Measurements& beams, const Calibration& lasers,
     if (own.beams == 0 || own.most - own.least > kSame || is_fixed(lasers.lasers[k].name + ".alpha"))
       continue;
     found.push_back(fmt::format("{} ({} beams at {:.3f} deg)", lasers.lasers[k].name, own.beams,
-                                static_cast<double>(own.least) / kDegree));
+                                static_cast<double>(own.least) / data::kDegree));
   }
   if (found.empty()) return;
   throw Error(
@@ -60,4 +60,4 @@ void refuse_single_beams(const Measurements& beams, const Calibration& lasers,
       "record whole scans (the laser's output range), or hold them: fixed: [alpha, tau]");
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -7,7 +7,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/measurements.hpp>
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// A laser whose beams all have one mirror angle is no scanner: rotating its mirror by alpha equals rotating
 /// its mount by lambda, and only a distance from the spin axis determines tau.
@@ -17,4 +17,4 @@ namespace crisp {
 void refuse_single_beams(const Measurements& beams, const Calibration& lasers,
                          const std::vector<std::string>& fixed);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -13,15 +13,15 @@
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/calibrate/curve_minima.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
-double wall_straightness(const SensorModel& model, const Sample& sample, double noise) {
-  const Vectors points = place_all(model, sample.beams, *sample.plate);
-  const auto running = running_sums(points.view(), by_azimuth(points.view()), noise);
-  return price_of(straight_runs(running, {}), running, {});
+double wall_straightness(const SensorModel& model, const estimate::Sample& sample, double noise) {
+  const Vectors points = estimate::place_all(model, sample.beams, *sample.plate);
+  const auto running = quality::running_sums(points.view(), quality::by_azimuth(points.view()), noise);
+  return quality::price_of(quality::straight_runs(running, {}), running, {});
 }
 
-bool turns_both_ways(const Sample& sample) {
+bool turns_both_ways(const estimate::Sample& sample) {
   constexpr double kShare = 0.1;
   double forth = 0;
   double back = 0;
@@ -32,20 +32,22 @@ bool turns_both_ways(const Sample& sample) {
   return std::min(forth, back) > kShare * (forth + back);
 }
 
-double between_scans(const Sample& own) {
+double between_scans(const estimate::Sample& own) {
   std::vector<double> gaps(own.beams.time.size());
   std::adjacent_difference(own.beams.time.begin(), own.beams.time.end(), gaps.begin());
-  return median_in_place(gaps);
+  return statistics::median_in_place(gaps);
 }
 
 std::optional<CompetingMinimum> minimize_wall_residual(SensorModel& model, std::size_t parameter,
                                                        const std::vector<double>& grid, bool circular,
-                                                       const Sample& sample, double noise) {
+                                                       const estimate::Sample& sample, double noise) {
   constexpr std::size_t kMaxMinima = 3;
   constexpr double kRoughly = 3;     // times the noise, during the global search
   constexpr double kOneMinimum = 3;  // steps: clutter makes dips near the minimum
   const auto price = [&](double by) {
-    return [&, by](double value) { return wall_straightness(with_one(model, parameter, value), sample, by); };
+    return [&, by](double value) {
+      return wall_straightness(estimate::with_one(model, parameter, value), sample, by);
+    };
   };
   auto places = local_minima(price(kRoughly * noise), grid, circular);
   places.resize(std::min(places.size(), kMaxMinima));
@@ -61,7 +63,7 @@ std::optional<CompetingMinimum> minimize_wall_residual(SensorModel& model, std::
   }
   std::ranges::sort(found, {}, &LineMinimum::value);
   const LineMinimum best = found.front();
-  model = with_one(model, parameter, best.at);
+  model = estimate::with_one(model, parameter, best.at);
   const auto competitor = std::ranges::find_if(found, [&](const LineMinimum& other) {
     return between(other.at, best.at, circular) > kOneMinimum * step;
   });
@@ -70,4 +72,4 @@ std::optional<CompetingMinimum> minimize_wall_residual(SensorModel& model, std::
       .parameter = parameter, .at = competitor->at, .height = std::log(competitor->value / best.value) / 2};
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -101,10 +101,10 @@ void report_losses(const DeviceReport& device, AlignmentReport& report) {
 /// can make it steep by chance; but then they are not far from it.
 std::string caveat_of(const DeviceReport& device) {
   if (!device.clock || device.clock->residual_median < kFar) return {};
-  if (std::abs(device.clock->skew_ppm()) < 0.99e6 * kMaxSkew) return {};
+  if (std::abs(device.clock->skew_ppm()) < 0.99e6 * clocks::kMaxSkew) return {};
   return fmt::format(
       "{}: its stamps fit no clock of constant rate (skew beyond {:.0f} ppm; half of them more than {:.1f} ms from it)",
-      device.device, 1e6 * kMaxSkew, 1e3 * device.clock->residual_median);
+      device.device, 1e6 * clocks::kMaxSkew, 1e3 * device.clock->residual_median);
 }
 
 /// Uncertainty of a clock's line [s] at the ends of half a minute about its middle; a longer recording has
@@ -137,6 +137,10 @@ void AlignmentReport::append(AlignmentReport other) {
   hub_deviation = std::max(hub_deviation, other.hub_deviation);
   for (auto& caveat : other.caveats) caveats.push_back(std::move(caveat));
 }
+
+}  // namespace crisp
+
+namespace crisp::clock {
 
 AlignmentReport HubTimings::report() const {
   AlignmentReport report{.devices = reports()};
@@ -175,4 +179,4 @@ AlignmentReport HubTimings::report() const {
   return report;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

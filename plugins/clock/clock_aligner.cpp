@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using clock::Received;
+
 constexpr double kWindow = 60;            // [s]
 constexpr double kLongestWindow = 240;    // [s] bounds the memory
 constexpr double kLookAhead = 1;          // [s] after a gap in the receipts
@@ -26,7 +28,7 @@ constexpr double kLate = 30;              // [s] a scan may come in so long afte
 void add_step(const StampStep& step, std::vector<StampStep>& steps) {
   constexpr double kNear = 1;  // [s]
   const auto same = std::ranges::find_if(steps, [&](const StampStep& other) {
-    return other.by > kPause && std::abs(other.at - step.at) < kNear;
+    return other.by > data::kPause && std::abs(other.at - step.at) < kNear;
   });
   if (same != steps.end())
     same->by += step.by;
@@ -76,9 +78,9 @@ class ClockAligner::Windows {
 
   AlignmentSettings settings_;
   AlignmentSink sink_;
-  HubTimings tracks_;
+  clock::HubTimings tracks_;
   AlignmentReport report_;  ///< of recordings that have ended, and the hub's clock
-  ForwardStep forward_step_;
+  clocks::ForwardStep forward_step_;
   std::int64_t stepped_ns_ = 0;  ///< by how much the hub's clock was set forward, in all
   std::vector<Received> held_;   ///< after a gap in the receipts, until its cause is known
   double begin_ = 0;             ///< [s since the epoch] of the window that is being filled
@@ -98,13 +100,13 @@ void ClockAligner::Windows::add(std::shared_ptr<const Scan> scan) {
 void ClockAligner::Windows::add(const PlateReading& reading) { receive(reading); }
 
 void ClockAligner::Windows::receive(Received item) {
-  if (stepped_ns_ != 0) set_back(item, stepped_ns_);
-  const std::int64_t receipt_ns = receipt_of(item);
+  if (stepped_ns_ != 0) clock::set_back(item, stepped_ns_);
+  const std::int64_t receipt_ns = clock::receipt_of(item);
   const bool is_gap = settings_.source == TimeSource::clock && tracks_.ends_pause(receipt_ns);
   if (held_.empty() && !is_gap) return pass(item);
-  forward_step_.after(device_of(item), stamp_of(item));
+  forward_step_.after(clock::device_of(item), clock::stamp_of(item));
   held_.push_back(std::move(item));
-  const double held = 1e-9 * static_cast<double>(receipt_ns - receipt_of(held_.front()));
+  const double held = 1e-9 * static_cast<double>(receipt_ns - clock::receipt_of(held_.front()));
   if (std::abs(held) > kLookAhead || held_.size() >= kMaxHeld) judge_gap();
 }
 
@@ -119,14 +121,14 @@ void ClockAligner::Windows::judge_gap() {
     report_.hub_deviation = std::max(report_.hub_deviation, by);
   }
   for (Received& item : std::exchange(held_, {})) {
-    if (step_ns > 0) set_back(item, step_ns);
+    if (step_ns > 0) clock::set_back(item, step_ns);
     pass(item);
   }
 }
 
 void ClockAligner::Windows::pass(const Received& item) {
-  const double hub = arrive(receipt_of(item));
-  forward_step_.before(device_of(item), stamp_of(item));
+  const double hub = arrive(clock::receipt_of(item));
+  forward_step_.before(clock::device_of(item), clock::stamp_of(item));
   if (const auto* reading = std::get_if<PlateReading>(&item)) {
     tracks_.plate().add(*reading, hub);
   } else {
@@ -162,10 +164,10 @@ void ClockAligner::Windows::advance_windows() {
 
 /// A deviation common to all devices' clocks is the hub's.
 void ClockAligner::Windows::take_out_hub_deviation() {
-  std::vector<std::vector<ReceivedStamp>> stamps;
+  std::vector<std::vector<clocks::ReceivedStamp>> stamps;
   for (const auto& laser : tracks_.lasers()) stamps.push_back(laser.clock().unsettled());
   stamps.push_back(tracks_.plate().clock().unsettled());
-  const auto deviation = find_hub_deviation(stamps);
+  const auto deviation = clocks::find_hub_deviation(stamps);
   if (!deviation) return;
   for (auto& laser : tracks_.lasers()) laser.clock().take_out(*deviation);
   tracks_.plate().clock().take_out(*deviation);
@@ -196,16 +198,16 @@ void ClockAligner::Windows::settle(double begin, double end) {
 }
 
 void ClockAligner::Windows::hand_out(double limit) {
-  EncoderTimestamper& plate = tracks_.plate();
+  clock::EncoderTimestamper& plate = tracks_.plate();
   const std::int64_t epoch_ns = tracks_.epoch_ns();
-  std::vector<TimedScan> scans;
+  std::vector<clock::TimedScan> scans;
   for (auto& laser : tracks_.lasers()) laser.take_before(limit, scans);
   if (scans.empty()) {
     plate.forget_before(limit - settings_.margin - kLate);
     return;
   }
   std::stable_sort(scans.begin(), scans.end(),
-                   [](const TimedScan& a, const TimedScan& b) { return a.begin < b.begin; });
+                   [](const clock::TimedScan& a, const clock::TimedScan& b) { return a.begin < b.begin; });
   double end = -std::numeric_limits<double>::infinity();
   for (const auto& scan : scans) end = std::max(end, scan.begin + scan.period);
   sink_.trajectory(

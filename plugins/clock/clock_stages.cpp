@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr double kPpmPerHour = 1e-6 / 3600;  // [1/s]
@@ -238,4 +238,4 @@ void AlignStage::finish(Outputs& out, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

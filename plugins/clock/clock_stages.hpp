@@ -10,7 +10,7 @@
 #include <crisp/online_aligner.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::clock {
 
 /// Common base of the clock stages: all but the source of the hub times.
 class AlignStage : public Stage {
@@ -67,4 +67,4 @@ class ReceiptStage final : public AlignStage {
   static void describe(StageDescription<ReceiptStage>& d);
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

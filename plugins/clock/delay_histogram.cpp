@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr double kShortest = 1e-8;  // [s]
@@ -31,4 +31,4 @@ double DelayHistogram::quantile(double share) const {
   return kShortest * std::exp(kRatio * kBins);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

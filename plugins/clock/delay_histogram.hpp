@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace crisp {
+namespace crisp::clock {
 
 /// Counts delays in bins of equal ratio, so that quantiles of any number of them need no memory.
 class DelayHistogram {
@@ -20,4 +20,4 @@ class DelayHistogram {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -7,8 +7,10 @@
 
 #include "pipeline/clocks/silence.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
+
+using clocks::StampKind;
 
 constexpr double kSilence = 1;           // [s]
 constexpr std::size_t kMaxNoted = 1000;  // silences, and steps
@@ -127,7 +129,7 @@ void DeviceStamps::count_useless(std::uint16_t counter, std::uint32_t raw_us, do
 
 void DeviceStamps::note_silence(double hub, double device_s) {
   if (report_.received == 1) first_hub_ = last_hub_ = hub;
-  const double silence = silence_between(hub - last_hub_, device_s);
+  const double silence = clocks::silence_between(hub - last_hub_, device_s);
   if (silence >= kSilence && report_.silences.size() < kMaxNoted)
     report_.silences.push_back({.begin = last_hub_, .duration = silence});
   last_hub_ = std::max(last_hub_, hub);
@@ -157,4 +159,4 @@ DeviceReport DeviceStamps::report() const {
   return report;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

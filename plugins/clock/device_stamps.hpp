@@ -13,7 +13,7 @@
 #include "pipeline/clocks/unwrap.hpp"
 #include "plugins/clock/windowed_clock_fit.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 /// Treatment of a device whose clock stands still.
 enum class StandingClock {
@@ -26,7 +26,7 @@ enum class StandingClock {
 class DeviceStamps {
  public:
   struct Arrival {
-    StampKind kind = StampKind::next;
+    clocks::StampKind kind = clocks::StampKind::next;
     std::int64_t device_us = 0;  ///< unwrapped, and without the steps of its clock
     std::int64_t steps = 1;      ///< of the counter since the one before; 1 after a reset
   };
@@ -63,7 +63,7 @@ class DeviceStamps {
     std::int64_t device_us = 0;  // by its clock, steps and all
     std::int64_t handover_us = 0;
     std::int64_t even_us = 0;  // without them
-    CounterUnwrapper counter;
+    clocks::CounterUnwrapper counter;
   };
   /// Detects a step of the clock since the last stamp.
   void watch_count(const Last& now, std::int64_t steps, double hub);
@@ -76,8 +76,8 @@ class DeviceStamps {
   void note_silence(double hub, double device_s);
 
   StandingClock standing_;
-  TimeUnwrapper time_;
-  CountedTime counted_;
+  clocks::TimeUnwrapper time_;
+  clocks::CountedTime counted_;
   WindowedClockFit clock_;
   DeviceReport report_;
   bool any_ = false;
@@ -96,4 +96,4 @@ class DeviceStamps {
   std::int64_t smallest_step_ = 0;  ///< the output interval
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -10,7 +10,7 @@
 #include "pipeline/clocks/clock_line.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr double kFastestChange = 100;  // [turns/s²] no plate spins up faster
@@ -35,12 +35,12 @@ EncoderTimestamper::EncoderTimestamper(const RigPlate& plate, DeviceStamps stamp
   }
 }
 
-bool EncoderTimestamper::is_continuous(const DeviceStamp& from, const PlateReading& reading) {
+bool EncoderTimestamper::is_continuous(const clocks::DeviceStamp& from, const PlateReading& reading) {
   constexpr double kMaxDelay = 1;       // [s]
   constexpr double kLargestError = 60;  // [s] beyond which a wrap of the clock could be mistaken for chance
   const auto [hub_s, device_us] =
-      elapsed(from, {.receipt_ns = reading.receipt_ns, .device_us = reading.device_us});
-  const double tolerance = kMaxDelay + kMaxSkew * std::abs(hub_s);
+      clocks::elapsed(from, {.receipt_ns = reading.receipt_ns, .device_us = reading.device_us});
+  const double tolerance = kMaxDelay + clocks::kMaxSkew * std::abs(hub_s);
   return tolerance < kLargestError && std::abs(1e-6 * static_cast<double>(device_us) - hub_s) < tolerance;
 }
 
@@ -53,12 +53,12 @@ bool EncoderTimestamper::add(const PlateReading& reading, double hub) {
   const auto arrival =
       stamps_.accept(reading.sequence, reading.device_us + static_cast<std::uint32_t>(reading.handover_us),
                      reading.receipt_ns, hub, reading.handover_us);
-  if (arrival.kind == StampKind::repeated) return false;
-  if (arrival.kind == StampKind::reset) {
+  if (arrival.kind == clocks::StampKind::repeated) return false;
+  if (arrival.kind == clocks::StampKind::reset) {
     before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
     zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, receipt);
   }
-  if (arrival.kind == StampKind::returned) undo_reset();
+  if (arrival.kind == clocks::StampKind::returned) undo_reset();
   if (source_ == TimeSource::receipt && taken_ > 0 && receipt <= last_.receipt) {
     ++simultaneous_;
     return true;
@@ -156,7 +156,7 @@ PlateTrajectory EncoderTimestamper::piece(double begin, double end, std::int64_t
     times.push_back(t);
     angles.push_back(static_cast<double>(reading->count) * angle_per_count_);
   }
-  angles = between_steps(times, angles, std::abs(angle_per_count_), settings.smoothing);
+  angles = data::between_steps(times, angles, std::abs(angle_per_count_), settings.smoothing);
   std::vector<double> new_zeros;
   if (std::exchange(zero_is_new_, false) && !times.empty()) new_zeros.push_back(times.front());
   return {epoch_ns, std::move(times), std::move(angles), settings.max_gap, std::move(new_zeros)};
@@ -168,4 +168,4 @@ void EncoderTimestamper::forget_before(double hub) {
   readings_.erase(readings_.begin(), keep);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -11,7 +11,7 @@
 #include "plugins/clock/device_stamps.hpp"
 #include "plugins/clock/scan_timestamper.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 /// The encoder readings on their way to a trajectory.
 class EncoderTimestamper {
@@ -24,9 +24,9 @@ class EncoderTimestamper {
   /// @throws Error as DeviceStamps::accept
   bool add(const PlateReading& reading, double hub);
   /// State from which a later track determines whether the encoder's count continued.
-  std::optional<DeviceStamp> latest_reading() const { return latest_; }
+  std::optional<clocks::DeviceStamp> latest_reading() const { return latest_; }
   /// To be called before the first reading, if there was another recording of this plate before.
-  void follow_on(const DeviceStamp& before) { before_ = before; }
+  void follow_on(const clocks::DeviceStamp& before) { before_ = before; }
 
   /// The plate from the last reading at or before `begin` to the first at or after `end` [s since the epoch],
   /// as far as there are readings.
@@ -64,7 +64,7 @@ class EncoderTimestamper {
   void classify_jump(const Reading& next);
   bool has_jumped(const Reading& from, const Reading& to) const;
   bool has_lost_zero(const PlateReading& reading, double receipt) const;
-  static bool is_continuous(const DeviceStamp& from, const PlateReading& reading);
+  static bool is_continuous(const clocks::DeviceStamp& from, const PlateReading& reading);
 
   double counts_per_revolution_;
   double angle_per_count_;  // [rad] negative where counts grow clockwise
@@ -77,9 +77,9 @@ class EncoderTimestamper {
   std::uint64_t taken_ = 0;
   bool zero_is_lost_ = false;
   Before before_reset_;  ///< for a reset that turns out to be none
-  std::optional<DeviceStamp> latest_;
-  std::optional<DeviceStamp> before_;  ///< of another recording, until there is a first reading
-  bool zero_is_new_ = false;           ///< and no piece has reported it
+  std::optional<clocks::DeviceStamp> latest_;
+  std::optional<clocks::DeviceStamp> before_;  ///< of another recording, until there is a first reading
+  bool zero_is_new_ = false;                   ///< and no piece has reported it
   Reading jumped_;
   std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
   std::uint64_t impossible_ = 0;
@@ -87,4 +87,4 @@ class EncoderTimestamper {
   std::uint64_t simultaneous_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -5,7 +5,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 DeviceStamps stamps_of(const std::string& device, const AlignmentSettings& settings) {
@@ -44,7 +44,7 @@ void HubTimings::begin_anew() {
 
 double HubTimings::arrive(std::int64_t receipt_ns) {
   pauses_.hear(receipt_ns);
-  if (!begun_) epoch_ns_ = epoch_of_run(receipt_ns);
+  if (!begun_) epoch_ns_ = clocks::epoch_of_run(receipt_ns);
   const double hub = 1e-9 * static_cast<double>(receipt_ns - epoch_ns_);
   if (!begun_) now_ = hub;
   if (!begin_) begin_ = hub;
@@ -117,4 +117,4 @@ std::vector<DeviceReport> HubTimings::reports() const {
   return reports;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

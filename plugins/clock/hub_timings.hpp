@@ -14,7 +14,7 @@
 #include "plugins/clock/encoder_timestamper.hpp"
 #include "plugins/clock/scan_timestamper.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 /// An aligner's tracks of a rig's devices.
 class HubTimings {
@@ -53,8 +53,8 @@ class HubTimings {
   AlignmentSettings settings_;
   std::vector<ScanTimestamper> lasers_;
   EncoderTimestamper plate_;
-  Pool<Measurements> measurements_;
-  Pauses pauses_;
+  data::Pool<Measurements> measurements_;
+  clocks::Pauses pauses_;
   std::int64_t epoch_ns_ = 0;
   bool begun_ = false;
   std::optional<double> begin_;  ///< [s since the epoch] of the present recording
@@ -64,4 +64,4 @@ class HubTimings {
   std::uint64_t back_in_time_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr std::array<std::size_t, 6> kHalfWidths = {2, 3, 4, 6, 8, 10};
@@ -15,7 +15,7 @@ constexpr double kLargestGap = 10;  // of usual steps of the turn number, within
 constexpr double kImplausible =
     0.05;  // a period this far from the usual one is a jump of stamps, not of the mirror
 constexpr int kRounds = 3;
-constexpr double kRobust = 3 * kMadToSigma;
+constexpr double kRobust = 3 * statistics::kMadToSigma;
 
 using Stamps = std::span<const MirrorStamp>;
 
@@ -72,7 +72,7 @@ std::vector<double> foretelling_errors(Stamps run, std::size_t half_width) {
 double scatter(const std::vector<double>& errors) {
   std::vector<double> sizes(errors.size());
   std::transform(errors.begin(), errors.end(), sizes.begin(), [](double e) { return std::abs(e); });
-  return sizes.empty() ? 0 : median_in_place(sizes);
+  return sizes.empty() ? 0 : statistics::median_in_place(sizes);
 }
 
 /// Stamps without large gaps between them.
@@ -82,7 +82,7 @@ std::vector<Stamps> runs_of(Stamps stamps) {
     steps.push_back(static_cast<double>(stamps[i].turn - stamps[i - 1].turn));
   }
   auto ordered = steps;
-  const double largest = kLargestGap * median_in_place(ordered);
+  const double largest = kLargestGap * statistics::median_in_place(ordered);
   std::vector<Stamps> runs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i <= stamps.size(); ++i) {
@@ -147,11 +147,11 @@ std::vector<MirrorTurn> smooth_mirror(Stamps stamps, const MirrorSmoothing& smoo
   for (const auto& turn : turns) {
     if (turn.period > 0) periods.push_back(turn.period);
   }
-  const double usual = periods.empty() ? smoothing.nominal_period : median_in_place(periods);
+  const double usual = periods.empty() ? smoothing.nominal_period : statistics::median_in_place(periods);
   for (auto& turn : turns) {
     if (std::abs(turn.period - usual) > kImplausible * usual) turn.period = usual;
   }
   return turns;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace crisp {
+namespace crisp::clock {
 
 /// A laser's stamp of its mirror's index pulse.
 struct MirrorStamp {
@@ -38,4 +38,4 @@ struct MirrorSmoothing {
 /// @return one turn a stamp
 std::vector<MirrorTurn> smooth_mirror(std::span<const MirrorStamp> stamps, const MirrorSmoothing& smoothing);
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using clock::TimedScan;
+
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kFuture = 1;        // [s] a scan that claims to be younger is not waited for
 constexpr double kReadingsKept = 2;  // [s] longer than any scan waits and reaches back
@@ -39,7 +41,7 @@ class OnlineAligner::Queue {
   void add(const PlateReading& reading);
   AlignmentReport finish();
   void set_lags(const Calibration& calibration) { settings_ = with_lags(settings_, calibration); }
-  const HubTimings& tracks() const { return tracks_; }
+  const clock::HubTimings& tracks() const { return tracks_; }
   std::size_t waiting() const { return waiting_.size(); }
 
  private:
@@ -50,7 +52,7 @@ class OnlineAligner::Queue {
   AlignmentSettings alignment_;
   OnlineSettings settings_;
   AlignmentSink sink_;
-  HubTimings tracks_;
+  clock::HubTimings tracks_;
   std::deque<TimedScan> waiting_;
   std::uint64_t impatient_ = 0;  ///< scans that went without the encoder readings
 };
@@ -61,7 +63,7 @@ OnlineAligner::Queue::Queue(const Rig& rig, const AlignmentSettings& alignment, 
 
 void OnlineAligner::Queue::add(std::shared_ptr<const Scan> scan) {
   const double hub = tracks_.arrive(scan->receipt_ns);
-  ScanTimestamper* laser = tracks_.track_of(*scan);
+  clock::ScanTimestamper* laser = tracks_.track_of(*scan);
   if (laser == nullptr) return;
   if (!laser->add(std::move(scan), hub)) return;
   laser->clock().follow(settings_.window);
@@ -75,14 +77,14 @@ void OnlineAligner::Queue::add(std::shared_ptr<const Scan> scan) {
 
 void OnlineAligner::Queue::add(const PlateReading& reading) {
   const double hub = tracks_.arrive(reading.receipt_ns);
-  EncoderTimestamper& plate = tracks_.plate();
+  clock::EncoderTimestamper& plate = tracks_.plate();
   if (plate.add(reading, hub)) plate.clock().follow(settings_.window);
   plate.forget_before(hub - kReadingsKept);
   release();
 }
 
 bool OnlineAligner::Queue::is_covered(const TimedScan& scan) const {
-  const EncoderTimestamper& plate = tracks_.plate();
+  const clock::EncoderTimestamper& plate = tracks_.plate();
   if (plate.clock().followed() < settings_.warm_up) return false;
   const auto latest = plate.latest();
   return latest && *latest >= last_beam(scan) + settings_.greatest_lag;

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 const Scan* scan_of(const Received& item) {
@@ -23,7 +23,7 @@ std::size_t device_of(const Received& item) {
   return scan ? std::size_t{1} + scan->laser : 0;
 }
 
-DeviceStamp stamp_of(const Received& item) {
+clocks::DeviceStamp stamp_of(const Received& item) {
   const Scan* scan = scan_of(item);
   if (scan) return {.receipt_ns = scan->receipt_ns, .device_us = scan->transmission_time_us};
   const auto& reading = std::get<PlateReading>(item);
@@ -41,4 +41,4 @@ void set_back(Received& item, std::int64_t step_ns) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -3,7 +3,7 @@
 
 #include "plugins/clock/clock_stages.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 void register_clock(Registrar& registrar) {
   registrar.stage<ConvexHullStage>();
@@ -11,4 +11,4 @@ void register_clock(Registrar& registrar) {
   registrar.stage<ReceiptStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

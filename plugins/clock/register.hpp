@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::clock {
 
 /// The stages clock.convex_hull, clock.online and clock.receipt.
 void register_clock(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::clock

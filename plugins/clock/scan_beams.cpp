@@ -8,7 +8,7 @@
 
 #include "pipeline/data/mirror_angle.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr double kFirstPossible =
@@ -63,7 +63,7 @@ void fill_echoes(const TimedScan& timed, const RigLaser& laser, Measurements& ou
   append_echoes(scan.echoes, std::min(scan.echoes.front().ranges.size(), kMaxBeams), out);
   for (const std::uint16_t k : out.beam) {
     out.mirror_angle.push_back(
-        static_cast<float>(wrapped_mirror_angle(scan.start_angle - laser.mount + k * scan.angle_step)));
+        static_cast<float>(data::wrapped_mirror_angle(scan.start_angle - laser.mount + k * scan.angle_step)));
     out.time.push_back(timed.beam_time(k));
   }
   out.laser.assign(out.size(), scan.laser);
@@ -108,7 +108,7 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
     if (has_remissions) std::copy_n(&remissions[k], count, &out.remission[n]);
     for_each_of(count, &out.beam[n], [=](std::int32_t i) { return first + i; });
     for_each_of(count, &out.mirror_angle[n], [=, step = scan.angle_step](std::int32_t i) {
-      return wrapped_mirror_angle(first_angle + (first + i) * step);
+      return data::wrapped_mirror_angle(first_angle + (first + i) * step);
     });
     for_each_of(count, &out.time[n], [=](std::int32_t i) { return first_time + (first + i) * time_step; });
     n += end - k;
@@ -119,4 +119,4 @@ void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64
   if (!has_remissions) std::fill(out.remission.begin(), out.remission.end(), 0.0F);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

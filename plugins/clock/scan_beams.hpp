@@ -8,7 +8,7 @@
 #include <crisp/rig.hpp>
 #include <crisp/scan.hpp>
 
-namespace crisp {
+namespace crisp::clock {
 
 /// A scan of which it is known when the mirror swept it.
 struct TimedScan {
@@ -32,4 +32,4 @@ struct TimedScan {
 void fill_measurements(const TimedScan& timed, const RigLaser& laser, std::int64_t epoch_ns,
                        Measurements& out);
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
 
 constexpr std::int64_t kNewRun = 1'000'000;  // turns: after a reset, nothing is a neighbour
@@ -24,7 +24,7 @@ bool ScanTimestamper::add(std::shared_ptr<const Scan> scan, double hub) {
     ++without_ranges_;
     return false;
   }
-  scan = with_used_echoes(std::move(scan), laser_.echo, echoes_);
+  scan = data::with_used_echoes(std::move(scan), laser_.echo, echoes_);
   const auto handover_us = static_cast<std::int32_t>(scan->transmission_time_us - scan->scan_time_us);
   const double handover = seconds(handover_us);
   if (handover < kEarliestHandover || handover > kLongestHandover) {
@@ -38,9 +38,9 @@ bool ScanTimestamper::add(std::shared_ptr<const Scan> scan, double hub) {
   stamps_.trust_counter(scan->numbered);
   const auto arrival =
       stamps_.accept(scan->scan_counter, scan->transmission_time_us, scan->receipt_ns, hub, handover_us);
-  if (arrival.kind == StampKind::repeated) return false;
-  if (arrival.kind == StampKind::returned && !pending_.empty()) pending_.pop_back();
-  turn_ += arrival.kind == StampKind::next ? arrival.steps : kNewRun;
+  if (arrival.kind == clocks::StampKind::repeated) return false;
+  if (arrival.kind == clocks::StampKind::returned && !pending_.empty()) pending_.pop_back();
+  turn_ += arrival.kind == clocks::StampKind::next ? arrival.steps : kNewRun;
   handovers_.add(handover);
   pending_.push_back({.scan = std::move(scan),
                       .stamp = {.turn = turn_, .time = seconds(arrival.device_us - handover_us)},
@@ -104,4 +104,4 @@ std::string ScanTimestamper::stamp_warning() const {
       laser_.name, 1e3 * handover, 1e3 * kMinHandover * period, laser_.name);
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -12,7 +12,7 @@
 #include "plugins/clock/mirror_smoothing.hpp"
 #include "plugins/clock/scan_beams.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 /// The scans of one laser on their way to being timed.
 class ScanTimestamper {
@@ -41,7 +41,7 @@ class ScanTimestamper {
   /// Counts the beams of a scan, and those of them that did not come back.
   void count_beams(const Scan& scan, const Measurements& measurements);
   std::uint64_t without_echo() const { return without_echo_; }  ///< beams
-  const EchoCounts& echoes() const { return echoes_; }          ///< where the laser sends several
+  const data::EchoCounts& echoes() const { return echoes_; }    ///< where the laser sends several
   bool has_no_echoes() const { return beams_ > 0 && without_echo_ == beams_; }
   /// A contradiction between the stamps and the rig's period_offset, or "".
   std::string stamp_warning() const;
@@ -65,9 +65,9 @@ class ScanTimestamper {
   std::vector<MirrorStamp> taken_;  ///< the last stamps that were handed out: neighbours of the next ones
   DelayHistogram handovers_;        ///< from stamp to transmission
   std::uint64_t without_ranges_ = 0;
-  EchoCounts echoes_;
+  data::EchoCounts echoes_;
   std::uint64_t beams_ = 0;
   std::uint64_t without_echo_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

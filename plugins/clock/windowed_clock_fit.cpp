@@ -7,8 +7,10 @@
 
 #include "pipeline/clocks/unwrap.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 namespace {
+
+using clocks::Stamp;
 
 constexpr double kWindowsBack = 2;         // how many windows' stamps before a window bound its line
 constexpr std::size_t kEnoughStamps = 64;  // to judge from them how far they are from the clock
@@ -49,7 +51,7 @@ WindowedClockFit::WindowedClockFit(std::string device, double bend)
 void WindowedClockFit::add(std::int64_t device_us, double hub) {
   hub -= hub_ahead_;
   if (cut_) {
-    segments_.push_back({.first_us = device_us, .first_hub = hub, .hull = LowerHull(bend_)});
+    segments_.push_back({.first_us = device_us, .first_hub = hub, .hull = clocks::LowerHull(bend_)});
     cut_ = false;
   }
   Segment& segment = segments_.back();
@@ -85,14 +87,14 @@ void WindowedClockFit::follow(double window) {
   while (segments_.size() > 2) segments_.pop_front();  // the last may still turn out to be none
   Segment& segment = segments_.back();
   forget_before(segment, segment.last_device - window);
-  const ClockLine line = line_of(segment);
+  const clocks::ClockLine line = line_of(segment);
   const bool is_first = !map_ || (segment.followed && map_->pieces.size() == 1);
   const double first = segment.device(0);
-  const double begin = is_first ? first : first - 0.75e-6 * kResetGap_us;  // as in carry_on()
+  const double begin = is_first ? first : first - 0.75e-6 * clocks::kResetGap_us;  // as in carry_on()
   const ClockPiece piece{.device_begin = begin,
                          .hub_begin = segment.first_hub + (begin - first) + line.lead(begin - first),
                          .rate = 1 + line.slope,
-                         .rate_std_error = kMaxSkew};
+                         .rate_std_error = clocks::kMaxSkew};
   if (segment.followed) {
     map_->pieces.replace_last(piece);
   } else {
@@ -122,9 +124,9 @@ void WindowedClockFit::forget_before(Segment& segment, double device) {
   if (kept - stamps.begin() > stamps.end() - kept) stamps.erase(stamps.begin(), kept);
 }
 
-ClockLine WindowedClockFit::line_of(const Segment& segment) {
+clocks::ClockLine WindowedClockFit::line_of(const Segment& segment) {
   const auto vertices = segment.hull.vertices();
-  return line_by_convex_hull(vertices, 0.5 * (vertices.front().device + segment.last_device));
+  return clocks::line_by_convex_hull(vertices, 0.5 * (vertices.front().device + segment.last_device));
 }
 
 std::optional<WindowedClockFit::WindowFit> WindowedClockFit::fit(const Segment& segment, double end) const {
@@ -133,17 +135,17 @@ std::optional<WindowedClockFit::WindowFit> WindowedClockFit::fit(const Segment& 
     if (segment.hub(stamp) < end) fit.stamps.push_back(stamp);
   }
   if (fit.stamps.empty()) return std::nullopt;
-  fit.line =
-      line_by_convex_hull(with_bounds(fit.stamps, segment.hull.vertices(), bend_), mean_device(fit.stamps));
+  fit.line = clocks::line_by_convex_hull(with_bounds(fit.stamps, segment.hull.vertices(), bend_),
+                                         mean_device(fit.stamps));
   const double span = fit.stamps.back().device - fit.stamps.front().device;
-  fit.errors = errors_of_line(fit.stamps, fit.line);
+  fit.errors = clocks::errors_of_line(fit.stamps, fit.line);
   fit.errors.at_center = std::hypot(fit.errors.at_center, segment.later_error);
   if (span > 0) fit.errors.slope = std::hypot(fit.errors.slope, segment.later_error / span);
   return fit;
 }
 
-std::vector<ReceivedStamp> WindowedClockFit::unsettled() const {
-  std::vector<ReceivedStamp> stamps;
+std::vector<clocks::ReceivedStamp> WindowedClockFit::unsettled() const {
+  std::vector<clocks::ReceivedStamp> stamps;
   const auto longest =
       std::ranges::max_element(segments_, {}, [](const Segment& segment) { return segment.stamps.size(); });
   if (longest == segments_.end()) return stamps;
@@ -152,7 +154,7 @@ std::vector<ReceivedStamp> WindowedClockFit::unsettled() const {
   return stamps;
 }
 
-void WindowedClockFit::take_out(const HubDeviation& deviation) {
+void WindowedClockFit::take_out(const clocks::HubDeviation& deviation) {
   for (Segment& segment : segments_) {
     if (segment.stamps.empty()) continue;
     const double first = segment.stamps.front().device;
@@ -174,7 +176,7 @@ void WindowedClockFit::take_out_steps() {
   constexpr int kMax = 8;  // a link that is so restless has no shortest delay
   for (auto& segment : segments_) {
     for (int n = 0; n < kMax; ++n) {
-      const auto step = step_of_delay(segment.stamps);
+      const auto step = clocks::step_of_delay(segment.stamps);
       if (!step) break;
       take_out(segment, *step);
     }
@@ -182,7 +184,7 @@ void WindowedClockFit::take_out_steps() {
 }
 
 /// The usual part stays: for a segment without a line yet, the longer one.
-void WindowedClockFit::take_out(Segment& segment, const DelayStep& step) {
+void WindowedClockFit::take_out(Segment& segment, const clocks::DelayStep& step) {
   auto& stamps = segment.stamps;
   const auto at = [&](std::size_t i) { return stamps.begin() + static_cast<std::ptrdiff_t>(i); };
   const double first = stamps.front().device;
@@ -200,7 +202,7 @@ void WindowedClockFit::take_out(Segment& segment, const DelayStep& step) {
 
 /// From the stamps that are not settled, of which the first was at `first` [s], and what settled ones left.
 void WindowedClockFit::make_hull_anew(Segment& segment, double first) const {
-  LowerHull hull(bend_);
+  clocks::LowerHull hull(bend_);
   for (const Stamp& vertex : segment.hull.vertices()) {
     if (vertex.device < first) hull.add(vertex);
   }
@@ -262,7 +264,7 @@ void WindowedClockFit::append_piece(const ClockPiece& piece) {
 void WindowedClockFit::carry_on(Segment& segment, const Knot& knot) {
   if (!segment.first_knot) {
     // A scan's own stamp is earlier than its transmission's, which began the segment.
-    const double begin = segment.device(0) - (map_ ? 0.75e-6 * kResetGap_us : 0);
+    const double begin = segment.device(0) - (map_ ? 0.75e-6 * clocks::kResetGap_us : 0);
     append_piece({.device_begin = begin,
                   .hub_begin = knot.hub - knot.rate * (knot.device - begin),
                   .rate = knot.rate,
@@ -306,7 +308,8 @@ bool WindowedClockFit::idle() const {
 void WindowedClockFit::finish() {
   std::optional<double> followed_error;
   if (map_ && !segments_.empty() && segments_.back().followed) {
-    const LineErrors errors = errors_of_line(segments_.back().stamps, line_of(segments_.back()));
+    const clocks::LineErrors errors =
+        clocks::errors_of_line(segments_.back().stamps, line_of(segments_.back()));
     followed_error = errors.slope;
     ClockPiece last = map_->pieces.back();
     last.rate_std_error = *followed_error;
@@ -322,11 +325,11 @@ void WindowedClockFit::finish() {
   if (!map_) return;
   map_->skew_std_error = followed_error     ? *followed_error
                          : fitted_time_ > 0 ? std::sqrt(squared_errors_) / fitted_time_
-                                            : kMaxSkew;
+                                            : clocks::kMaxSkew;
   if (knots_ > 0) map_->std_error = std::sqrt(squared_offsets_) / static_cast<double>(knots_);
   map_->residual_median = delays_.quantile(0.5);
   map_->residual_95 = delays_.quantile(0.95);
   map_->stamps = stamps_;
 }
 
-}  // namespace crisp
+}  // namespace crisp::clock

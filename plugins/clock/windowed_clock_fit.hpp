@@ -18,7 +18,7 @@
 #include "pipeline/clocks/lower_hull.hpp"
 #include "plugins/clock/delay_histogram.hpp"
 
-namespace crisp {
+namespace crisp::clock {
 
 /// One device's clock, fitted window by window while its stamps come in: the map from device time to hub
 /// time runs straight from the line of one window, at the window's middle, to that of the next.
@@ -50,9 +50,9 @@ class WindowedClockFit {
   const std::vector<StampStep>& delay_steps() const { return delay_steps_; }
 
   /// The stamps that are not settled, of the longest stretch without a reset.
-  std::vector<ReceivedStamp> unsettled() const;
+  std::vector<clocks::ReceivedStamp> unsettled() const;
   /// Corrects those stamps by the hub's deviation, and all later ones by its last value.
-  void take_out(const HubDeviation& deviation);
+  void take_out(const clocks::HubDeviation& deviation);
 
   /// Uncertainty of the line of the window that ends at `end` [s since the epoch], in s; 0 if there are too
   /// few stamps for an estimate.
@@ -83,7 +83,7 @@ class WindowedClockFit {
     double device = 0;  ///< [s]
     double hub = 0;     ///< [s since the epoch]
     double rate = 1;
-    LineErrors errors;
+    clocks::LineErrors errors;
   };
   struct Segment {
     std::int64_t first_us = 0;
@@ -91,24 +91,24 @@ class WindowedClockFit {
     double last_device = 0;  ///< [s] of the last stamp, since the first
     double later = 0;        ///< [s] by which the shortest delay has grown: taken out of leads
     double later_error = 0;  ///< [s] standard error of that
-    LowerHull hull;
-    std::vector<Stamp> stamps;  ///< of the windows that are not yet settled
+    clocks::LowerHull hull;
+    std::vector<clocks::Stamp> stamps;  ///< of the windows that are not yet settled
     std::optional<Knot> first_knot;
     std::optional<Knot> last_knot;
     bool followed = false;  ///< the map's last piece is its
 
     double device(double stamp_device) const { return 1e-6 * static_cast<double>(first_us) + stamp_device; }
-    double hub(const Stamp& stamp) const { return first_hub + stamp.device + stamp.lead; }
+    double hub(const clocks::Stamp& stamp) const { return first_hub + stamp.device + stamp.lead; }
   };
   struct WindowFit {
-    std::vector<Stamp> stamps;
-    ClockLine line;
-    LineErrors errors;
+    std::vector<clocks::Stamp> stamps;
+    clocks::ClockLine line;
+    clocks::LineErrors errors;
   };
 
-  static ClockLine line_of(const Segment& segment);
+  static clocks::ClockLine line_of(const Segment& segment);
   static void forget_before(Segment& segment, double device);
-  void take_out(Segment& segment, const DelayStep& step);
+  void take_out(Segment& segment, const clocks::DelayStep& step);
   void make_hull_anew(Segment& segment, double first) const;
   std::optional<WindowFit> fit(const Segment& segment, double end) const;
   void settle(Segment& segment, double begin, double end);
@@ -132,4 +132,4 @@ class WindowedClockFit {
   std::size_t knots_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::clock

@@ -18,7 +18,7 @@ struct Cells {
   std::vector<SlotRange> slots;
 };
 
-Cells occupied_cells(const SpatialOrder& order) {
+Cells occupied_cells(const quality::SpatialOrder& order) {
   Cells cells;
   for (std::uint32_t slot = 0; slot < order.cell.size(); ++slot) {
     if (slot == 0 || order.cell[slot] != order.cell[slot - 1]) {
@@ -32,13 +32,13 @@ Cells occupied_cells(const SpatialOrder& order) {
 
 /// The slots of a cell and of those around it, in ascending order; what is adjacent is one range.
 std::vector<SlotRange> near_slots(const Cells& cells, std::size_t cell) {
-  const auto [x, y, z] = cell_of(cells.key[cell]);
+  const auto [x, y, z] = quality::cell_of(cells.key[cell]);
   std::vector<SlotRange> found;
   for (const std::int64_t i : {x - 1, x, x + 1}) {
     for (const std::int64_t j : {y - 1, y, y + 1}) {
       for (const std::int64_t k : {z - 1, z, z + 1}) {
-        const auto key = std::ranges::lower_bound(cells.key, cell_key({i, j, k}));
-        if (key == cells.key.end() || *key != cell_key({i, j, k})) continue;
+        const auto key = std::ranges::lower_bound(cells.key, quality::cell_key({i, j, k}));
+        if (key == cells.key.end() || *key != quality::cell_key({i, j, k})) continue;
         found.push_back(cells.slots[static_cast<std::size_t>(key - cells.key.begin())]);
       }
     }
@@ -64,7 +64,7 @@ double extent(std::span<const double> values) {
 
 CellPlan plan_cells(const PointsView& points, double side) {
   CellPlan plan;
-  plan.order = spatial_order(points, side);
+  plan.order = quality::spatial_order(points, side);
   plan.near_begin = {0};
   if (points.size() == 0) return plan;
   for (const auto axis : {points.x, points.y, points.z}) {
@@ -73,7 +73,7 @@ CellPlan plan_cells(const PointsView& points, double side) {
 
   const Cells cells = occupied_cells(plan.order);
   std::vector<std::vector<SlotRange>> lists(cells.key.size());
-  for_blocks(lists.size(), kCellBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  quality::for_blocks(lists.size(), kCellBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) lists[cell] = near_slots(cells, cell);
   });
   for (std::size_t cell = 0; cell < lists.size(); ++cell) {

@@ -13,7 +13,7 @@ namespace crisp::cuda {
 
 /// Which points are summed side by side, and against which. A slot is a place in `order`.
 struct CellPlan {
-  SpatialOrder order;                     ///< by cells
+  quality::SpatialOrder order;            ///< by cells
   std::vector<Unit> units;                ///< cell by cell
   std::vector<SlotRange> near;            ///< see PlanView
   std::vector<std::uint64_t> near_begin;  ///< see PlanView

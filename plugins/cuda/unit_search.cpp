@@ -21,8 +21,8 @@ constexpr double kSlack = 0.1;
 
 /// Whether no coordinate is farther from where it was than `most` [m].
 bool all_near(std::span<const double> now, std::span<const double> before, double most) {
-  std::vector<char> near(blocks_of(now.size(), kPointBlock), 1);
-  for_blocks(now.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<char> near(quality::blocks_of(now.size(), kPointBlock), 1);
+  quality::for_blocks(now.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!(std::abs(now[i] - before[i]) <= most)) near[block] = 0;
     }
@@ -39,7 +39,7 @@ Vectors copy_of(const PointsView& points) {
 }  // namespace
 
 std::unique_ptr<NeighbourIndex> UnitSearch::index(const PointsView& points, double radius) const {
-  return GridSearch().index(points, radius);
+  return quality::GridSearch().index(points, radius);
 }
 
 const UnitSearch::Planned& UnitSearch::planned_for(const PointsView& points, double radius) {
@@ -73,7 +73,8 @@ GaussianSums UnitSearch::sums(const PointsView& points, std::span<const double> 
   result.pairs = (ordered_pairs - points.size()) / 2;  // each point met itself
   result.tested = planned.cells.tested;
   result.gradient = std::move(sums.gradient);
-  if (requested.error) result.error = truncation_bound(kernel, spatial_order(points, kernel.radius), weights);
+  if (requested.error)
+    result.error = quality::truncation_bound(kernel, quality::spatial_order(points, kernel.radius), weights);
   return result;
 }
 

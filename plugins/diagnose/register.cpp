@@ -9,7 +9,7 @@
 #include "plugins/diagnose/report/crispness_stage.hpp"
 #include "plugins/diagnose/report/findings_inspector.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 void register_diagnose(Registrar& registrar) {
   registrar.stage<CrispnessStage>();
@@ -21,4 +21,4 @@ void register_diagnose(Registrar& registrar) {
   registrar.inspector(findings_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 void register_diagnose(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::filter {
 namespace {
 
 bool is_within(const Limits& limits, double value) {
@@ -55,4 +55,4 @@ Measurements within(const Measurements& beams, const RangeLimits& limits) {
   return kept;
 }
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -8,7 +8,7 @@
 #include <crisp/cloud.hpp>
 #include <crisp/measurements.hpp>
 
-namespace crisp {
+namespace crisp::filter {
 
 /// From the smallest to the largest value that is kept, both included; empty: no limit.
 using Limits = std::vector<double>;
@@ -39,4 +39,4 @@ struct RangeLimits {
 /// The measurements within all limits, in their order.
 Measurements within(const Measurements& beams, const RangeLimits& limits);
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -10,7 +10,7 @@
 
 #include "pipeline/files/nearest.hpp"
 
-namespace crisp {
+namespace crisp::filter {
 namespace {
 
 template <class Declaration>
@@ -86,7 +86,8 @@ RangeLimits RangeStage::limits(const Rig& rig) const {
   for (const auto& name : lasers_) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
-      throw Error("the rig has no laser '" + name + "'", did_you_mean(name, known, "see the rig's file"));
+      throw Error("the rig has no laser '" + name + "'",
+                  files::did_you_mean(name, known, "see the rig's file"));
     }
     limits.lasers.push_back(static_cast<unsigned>(found - known.begin()));
   }
@@ -106,4 +107,4 @@ void RangeStage::finish(Outputs&, Context& context) {
   context.print(fmt::format("kept {} of {} measurements", kept_, all_));
 }
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -9,7 +9,7 @@
 
 #include "plugins/filter/limits.hpp"
 
-namespace crisp {
+namespace crisp::filter {
 
 /// `filter.crop`: a part of the cloud, by where its points are.
 class CropStage final : public Stage {
@@ -44,4 +44,4 @@ class RangeStage final : public Stage {
   std::size_t kept_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::filter

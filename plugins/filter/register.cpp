@@ -4,7 +4,7 @@
 #include "plugins/filter/limits_stages.hpp"
 #include "plugins/filter/voxel_stage.hpp"
 
-namespace crisp {
+namespace crisp::filter {
 
 void register_filter(Registrar& registrar) {
   registrar.stage<CropStage>();
@@ -12,4 +12,4 @@ void register_filter(Registrar& registrar) {
   registrar.stage<VoxelStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::filter {
 
 void register_filter(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::filter

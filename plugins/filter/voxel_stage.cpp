@@ -7,7 +7,7 @@
 
 #include <crisp/cloud.hpp>
 
-namespace crisp {
+namespace crisp::filter {
 
 void VoxelStage::describe(StageDescription<VoxelStage>& d) {
   d.name("filter.voxel").summary("thins the cloud to one point in each cell of a grid");
@@ -43,4 +43,4 @@ void VoxelStage::finish(Outputs&, Context& context) {
       too_far_, std::ldexp(size_, 31) / 1000));
 }
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -7,7 +7,7 @@
 #include <crisp/stage_description.hpp>
 #include <crisp/voxels.hpp>
 
-namespace crisp {
+namespace crisp::filter {
 
 /// `filter.voxel`: thins a cloud to one point in each cell of a grid.
 class VoxelStage final : public Stage {
@@ -22,4 +22,4 @@ class VoxelStage final : public Stage {
   std::size_t too_far_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::filter

@@ -3,7 +3,7 @@
 
 #include <openssl/evp.h>
 
-namespace crisp {
+namespace crisp::report {
 
 std::string base64_of(std::span<const unsigned char> bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock ends it by a zero
@@ -13,4 +13,4 @@ std::string base64_of(std::span<const unsigned char> bytes) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-namespace crisp {
+namespace crisp::report {
 
 /// RFC 4648, with padding, in one line.
 std::string base64_of(std::span<const unsigned char> bytes);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -7,14 +7,14 @@
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/shown_unit.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 std::map<std::string, Parameter> by_name(const Calibration& calibration) {
   std::map<std::string, Parameter> all;
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) { all[name] = p; });
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) { all[name] = p; });
   return all;
 }
 
@@ -22,8 +22,8 @@ Json parameters_json(const Calibration& calibration, const Calibration& nominal,
   const auto nominals = by_name(nominal);
   const auto earlier = against ? by_name(*against) : std::map<std::string, Parameter>();
   Json all = Json::array();
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
-    const ShownUnit unit = shown_unit(p.unit);
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
+    const data::ShownUnit unit = data::shown_unit(p.unit);
     Json row = {{"name", name}, {"unit", unit.name}, {"value", unit.factor * p.value}, {"free", p.free}};
     if (p.free) row["std_error"] = unit.factor * p.std_error;
     if (const auto found = nominals.find(name); found != nominals.end())
@@ -79,4 +79,4 @@ Json calibration_json(const Calibration& calibration, const Calibration& nominal
           {"provenance", calibration.provenance}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

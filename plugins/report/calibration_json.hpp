@@ -5,7 +5,7 @@
 
 #include <crisp/calibration.hpp>
 
-namespace crisp {
+namespace crisp::report {
 
 /// A calibration for a report: parameters in mm, degrees and ms with standard errors, next to the values of
 /// the rig and of an earlier calibration, correlations of the free ones, and unobservable ones.
@@ -15,4 +15,4 @@ namespace crisp {
 nlohmann::ordered_json calibration_json(const Calibration& calibration, const Calibration& nominal,
                                         const Calibration* against);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/report/cell_runs.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
-std::vector<CellRun> cell_runs(const SpatialOrder& order, unsigned levels) {
+std::vector<CellRun> cell_runs(const quality::SpatialOrder& order, unsigned levels) {
   constexpr unsigned kBits = 3;  // of a key, one an axis
   std::vector<CellRun> runs;
   for (std::size_t i = 0; i < order.cell.size(); ++i) {
@@ -14,4 +14,4 @@ std::vector<CellRun> cell_runs(const SpatialOrder& order, unsigned levels) {
   return runs;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

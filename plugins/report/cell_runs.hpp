@@ -6,7 +6,7 @@
 
 #include "pipeline/quality/spatial_order.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// The points of one cell: places `begin` … `end` − 1 along a Morton curve.
 struct CellRun {
@@ -18,6 +18,6 @@ struct CellRun {
 
 /// The cells that hold points, along the curve.
 /// @param levels  how often the cells' side is doubled before
-std::vector<CellRun> cell_runs(const SpatialOrder& order, unsigned levels);
+std::vector<CellRun> cell_runs(const quality::SpatialOrder& order, unsigned levels);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -12,7 +12,7 @@
 #include "pipeline/data/internal_error.hpp"
 #include "plugins/report/base64.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 struct ValueRange {
@@ -113,7 +113,7 @@ std::vector<unsigned char> deflated(const std::vector<unsigned char>& bytes) {
   std::vector<unsigned char> packed(size);
   const int status = compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kLevel);
   if (status != Z_OK)
-    throw internal_error("zlib cannot compress the report's cloud: " + std::to_string(status));
+    throw data::internal_error("zlib cannot compress the report's cloud: " + std::to_string(status));
   packed.resize(size);
   return packed;
 }
@@ -137,7 +137,7 @@ EncodedCloud encode(const ShownCloud& cloud) {
   }
   if (!cloud.incidence.empty()) {
     std::vector<double> degrees = cloud.incidence;
-    for (double& angle : degrees) angle /= kDegree;
+    for (double& angle : degrees) angle /= data::kDegree;
     columns.add("incidence", degrees, {.bytes = 1, .gaps = true});
   }
   return {.header = {{"points", cloud.size()},
@@ -147,4 +147,4 @@ EncodedCloud encode(const ShownCloud& cloud) {
           .base64 = base64_of(deflated(columns.bytes()))};
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

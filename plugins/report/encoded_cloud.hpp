@@ -6,7 +6,7 @@
 
 #include "plugins/report/shown_cloud.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// A cloud as a page holds it: quantised columns, deflated (RFC 1950), in base64.
 ///
@@ -25,4 +25,4 @@ inline constexpr double kCoordinateStep = 1e-3;
 
 EncodedCloud encode(const ShownCloud& cloud);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -15,7 +15,7 @@
 #include "plugins/report/run_content.hpp"
 #include "plugins/report/use_json.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ bool is_file(const fs::path& file) {
 /// All parts of a cloud as one.
 Cloud cloud_in(const fs::path& file, std::vector<fs::path>& read) {
   Cloud all;
-  read_parts(file, [&](const PcdTable& table, const fs::path& part) {
+  pcd::read_parts(file, [&](const PcdTable& table, const fs::path& part) {
     all += *cloud_of(table).cloud;
     read.push_back(part);
   });
@@ -44,7 +44,7 @@ PageContent batch_content(const fs::path& folder, Json batch) {
     if (is_file(folder / page)) row["report"] = page.generic_string();
   }
   PageContent content{.title = folder.filename().string(), .data = {}, .plots = {}, .cloud = {}};
-  content.data = {{"kind", "batch"}, {"written", utc_now()}, {"batch", std::move(batch)}};
+  content.data = {{"kind", "batch"}, {"written", files::utc_now()}, {"batch", std::move(batch)}};
   return content;
 }
 
@@ -60,13 +60,13 @@ void add_results(const fs::path& folder, const FolderPageSettings& settings, Fol
   }
   if (const fs::path file = folder / "diagnosis.json"; is_file(file)) {
     data["findings"] = use_json(file, [](Json findings) {
-      rename_old_keys(findings, "diagnosis");
+      files::rename_old_keys(findings, "diagnosis");
       return findings;
     });
     page.read.push_back(file);
   }
   const fs::path cloud = folder / "cloud.pcd";
-  if (is_file(cloud) || is_file(part_path(cloud, 1)))
+  if (is_file(cloud) || is_file(pcd::part_path(cloud, 1)))
     page.content.cloud = encode(shown_cloud(cloud_in(cloud, page.read), settings.points));
 }
 
@@ -79,13 +79,13 @@ FolderPage folder_page(const fs::path& folder, const FolderPageSettings& setting
     page.read.push_back(file);
     return page;
   }
-  const fs::path file = folder / kSummary;
+  const fs::path file = folder / stage::kSummary;
   if (!is_file(file)) {
     throw Error(folder.string() + " holds neither summary.json nor batch.json",
                 "give the output folder of crisp run or crisp batch (-o)");
   }
   page.content = use_json(file, [&](Json summary) {
-    rename_old_keys(summary, "summary");
+    files::rename_old_keys(summary, "summary");
     return run_content(summary, folder);
   });
   page.read.push_back(file);
@@ -93,4 +93,4 @@ FolderPage folder_page(const fs::path& folder, const FolderPageSettings& setting
   return page;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

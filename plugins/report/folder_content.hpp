@@ -9,7 +9,7 @@
 
 #include "plugins/report/page.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// Settings of a folder's page.
 struct FolderPageSettings {
@@ -27,4 +27,4 @@ struct FolderPage {  // NOLINT(bugprone-exception-escape): moving JSON checks wh
 /// @throws Error  if it holds neither, or a file that is damaged
 FolderPage folder_page(const std::filesystem::path& folder, const FolderPageSettings& settings);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -6,7 +6,7 @@
 
 #include "plugins/report/folder_content.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 void FolderReportStage::describe(StageDescription<FolderReportStage>& d) {
   d.name("report.folder").summary("writes an HTML report of a run's or a batch's results");
@@ -35,4 +35,4 @@ void FolderReportStage::process(const Inputs&, Outputs&, Context& context) {
   context.wrote(file);
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -7,7 +7,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::report {
 
 /// `report.folder`: the page of what a run or a batch left in a folder.
 class FolderReportStage final : public Stage {
@@ -22,4 +22,4 @@ class FolderReportStage final : public Stage {
   std::optional<std::filesystem::path> against_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::report

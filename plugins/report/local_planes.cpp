@@ -7,22 +7,23 @@
 
 #include "plugins/report/cell_runs.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 constexpr unsigned kLevels = 2;       // the cells' side is doubled twice
 constexpr double kMaxFlatness = 0.2;  // spread across the plane over that along it
 constexpr std::size_t kMin = 12;      // points of a plane
 
-Plane plane_of_run(const CellRun& run, const PointsView& points, const SpatialOrder& order) {
-  Moments moments;
+quality::Plane plane_of_run(const CellRun& run, const PointsView& points,
+                            const quality::SpatialOrder& order) {
+  quality::Moments moments;
   const std::uint32_t first = order.index[run.begin];
   const Eigen::Vector3d origin(points.x[first], points.y[first], points.z[first]);
   for (std::size_t k = run.begin; k < run.end; ++k) {
     const std::uint32_t i = order.index[k];
     moments.add(Eigen::Vector3d(points.x[i], points.y[i], points.z[i]) - origin);
   }
-  Plane plane = plane_of(moments);
+  quality::Plane plane = quality::plane_of(moments);
   plane.middle += origin;
   if (plane.normal.dot(plane.middle) > 0) plane.normal = -plane.normal;
   return plane;
@@ -40,11 +41,11 @@ double LocalPlanes::incidence(std::size_t point, const Eigen::Vector3d& directio
   return std::acos(std::min(1.0, std::abs(planes[of[point]].normal.dot(direction.normalized()))));
 }
 
-LocalPlanes local_planes(const PointsView& points, const SpatialOrder& order) {
+LocalPlanes local_planes(const PointsView& points, const quality::SpatialOrder& order) {
   LocalPlanes found{.planes = {}, .of = std::vector(points.size(), LocalPlanes::kNone)};
   for (const CellRun& run : cell_runs(order, kLevels)) {
     if (run.size() < kMin) continue;
-    const Plane plane = plane_of_run(run, points, order);
+    const quality::Plane plane = plane_of_run(run, points, order);
     if (!(plane.extent[0] < kMaxFlatness * plane.extent[1])) continue;
     for (std::size_t k = run.begin; k < run.end; ++k) {
       found.of[order.index[k]] = static_cast<std::uint32_t>(found.planes.size());
@@ -54,4 +55,4 @@ LocalPlanes local_planes(const PointsView& points, const SpatialOrder& order) {
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -45,7 +45,7 @@ Json motion_json(const PlateTrajectory& plate, std::size_t most) {
   return {{"time", times}, {"turns", angles}, {"rate", rates}};
 }
 
-Json coverage_json(const Sample& sample, const std::vector<std::string>& lasers) {
+Json coverage_json(const estimate::Sample& sample, const std::vector<std::string>& lasers) {
   std::vector<std::array<std::array<std::uint32_t, kCells>, kCells>> counts(lasers.size());
   for (std::size_t i = 0; i < sample.beams.size(); ++i) {
     const auto plate = sample.plate->at(sample.beams.time[i]);
@@ -59,4 +59,4 @@ Json coverage_json(const Sample& sample, const std::vector<std::string>& lasers)
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

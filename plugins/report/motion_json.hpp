@@ -7,7 +7,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// Motion of the plate: times [s from the first], angles [turns] and rates [Hz], at most `most` of them.
 /// Between readings farther apart than the trajectory interpolates across, a null breaks each list.
@@ -15,6 +15,6 @@ nlohmann::ordered_json motion_json(const PlateTrajectory& plate, std::size_t mos
 
 /// Coverage of each laser: number of beams by mirror angle (rows, from −180° to 180°) and the plate's angle
 /// (columns, from 0° to 360°), in cells of 10°; one table a laser.
-nlohmann::ordered_json coverage_json(const Sample& sample, const std::vector<std::string>& lasers);
+nlohmann::ordered_json coverage_json(const estimate::Sample& sample, const std::vector<std::string>& lasers);
 
-}  // namespace crisp
+}  // namespace crisp::report

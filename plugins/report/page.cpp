@@ -10,7 +10,7 @@
 #include "plugins/report/base64.hpp"
 #include "plugins/report/page_assets.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 std::string replaced(const std::string& text, char what, std::string_view by) {
@@ -58,7 +58,7 @@ std::string with_plots(const PageContent& content) {
 }  // namespace
 
 std::string script_json(const nlohmann::ordered_json& json) {
-  return replaced(json_text(json), '<', "\\u003c");
+  return replaced(files::json_text(json), '<', "\\u003c");
 }
 
 std::string html_text(const std::string& text) {
@@ -87,4 +87,4 @@ std::string page_html(const PageContent& content) {
   return page + "<script>" + script + "</script>\n</body>\n</html>\n";
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -8,7 +8,7 @@
 
 #include "plugins/report/encoded_cloud.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// A plot that a stage drew.
 struct ReportPlot {
@@ -34,4 +34,4 @@ std::string html_text(const std::string& text);
 /// would, and every script but its own.
 std::string page_html(const PageContent& content);
 
-}  // namespace crisp
+}  // namespace crisp::report

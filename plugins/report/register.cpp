@@ -5,7 +5,7 @@
 #include "plugins/report/report_stage.hpp"
 #include "plugins/report/run_inspector.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 void register_report(Registrar& registrar) {
   registrar.stage<WriteReportStage>();
@@ -13,4 +13,4 @@ void register_report(Registrar& registrar) {
   registrar.inspector(run_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::report {
 
 void register_report(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::report

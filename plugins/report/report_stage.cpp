@@ -13,7 +13,7 @@
 #include "plugins/report/motion_json.hpp"
 #include "plugins/report/run_content.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -63,9 +63,9 @@ void WriteReportStage::finish(Outputs&, Context& context) {
     }
     data["calibration"] = calibration_json(*calibration_, nominal, earlier ? &*earlier : nullptr);
   }
-  if (findings_) data["findings"] = Json::parse(findings_json(*findings_));
+  if (findings_) data["findings"] = Json::parse(files::findings_json(*findings_));
   if (has_beams_) {
-    const Sample sample = collected_.sample();
+    const estimate::Sample sample = collected_.sample();
     data["motion"] = motion_json(*sample.plate);
     data["coverage"] = coverage_json(sample, names_of(context.rig()));
     const auto& terms = context.run().registrar->get<TermRegistry>();
@@ -91,4 +91,4 @@ void WriteReportStage::finish(Outputs&, Context& context) {
       });
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -13,7 +13,7 @@
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// `write.report`: the run as one HTML page.
 class WriteReportStage final : public Stage {
@@ -28,11 +28,11 @@ class WriteReportStage final : public Stage {
   std::optional<std::filesystem::path> against_;
 
   static constexpr std::size_t kMaxBeams = 2'000'000;  ///< that points are chosen from
-  MeasurementBuffer collected_{kMaxBeams};
+  estimate::MeasurementBuffer collected_{kMaxBeams};
   bool has_beams_ = false;
-  OrientedPlate oriented_;
+  data::OrientedPlate oriented_;
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const Findings> findings_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -8,7 +8,7 @@
 
 #include "pipeline/files/utc_now.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,7 +49,7 @@ std::string title_of(const Json& summary) {
 
 PageContent run_content(const Json& summary, const fs::path& folder) {
   PageContent content{.title = title_of(summary), .data = {}, .plots = {}, .cloud = {}};
-  content.data = {{"kind", "run"}, {"written", utc_now()}, {"summary", summary}};
+  content.data = {{"kind", "run"}, {"written", files::utc_now()}, {"summary", summary}};
   for (const Json& stage : summary.value("stages", Json::array())) {
     for (const Json& file : stage.value("outputs", Json::array())) {
       if (auto plot = plot_of(file.get<std::string>(), folder)) content.plots.push_back(std::move(*plot));
@@ -58,4 +58,4 @@ PageContent run_content(const Json& summary, const fs::path& folder) {
   return content;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

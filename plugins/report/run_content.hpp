@@ -5,7 +5,7 @@
 
 #include "plugins/report/page.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// The report of a run without its calibration, findings and cloud: verdict, devices, provenance, and the
 /// stages' plots.
@@ -14,4 +14,4 @@ namespace crisp {
 /// @param folder   fallback folder of plots that have moved since the run; empty: none
 PageContent run_content(const nlohmann::ordered_json& summary, const std::filesystem::path& folder = {});
 
-}  // namespace crisp
+}  // namespace crisp::report

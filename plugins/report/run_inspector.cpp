@@ -6,14 +6,14 @@
 #include "pipeline/files/json_text.hpp"
 #include "plugins/report/use_json.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 /// Recognizes the first keys that a run writes.
 bool is_run(std::string_view head) {
-  const std::string packed = without_space(head);
+  const std::string packed = files::without_space(head);
   return packed.starts_with(R"({"crisp":")") && packed.find(R"(,"command":")") != std::string::npos &&
          packed.find(R"(,"pipeline":")") != std::string::npos;
 }
@@ -46,4 +46,4 @@ Inspection inspect_run(const std::filesystem::path& file, const Rig&) {
 
 Inspector run_inspector() { return {"a run's summary", is_run, inspect_run}; }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -3,9 +3,9 @@
 
 #include <crisp/inspector.hpp>
 
-namespace crisp {
+namespace crisp::report {
 
 /// Describes the summary.json of a run.
 Inspector run_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::report

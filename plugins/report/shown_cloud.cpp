@@ -9,7 +9,7 @@
 #include "plugins/report/local_planes.hpp"
 #include "plugins/report/voxel_sampling.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 constexpr double kSide = 0.1;  // [m] of the cells that points are chosen from
@@ -70,16 +70,16 @@ Vectors directions(const SensorModel& model, Measurements beams, const PlateTraj
 
 }  // namespace
 
-ShownCloud shown_cloud(const Sample& sample, const SensorModel& before, const SensorModel& after,
+ShownCloud shown_cloud(const estimate::Sample& sample, const SensorModel& before, const SensorModel& after,
                        std::size_t count) {
   const Vectors all_before = placed_or_nan(before, sample.beams, *sample.plate);
   const Vectors all_after = placed_or_nan(after, sample.beams, *sample.plate);
   const std::vector<std::uint32_t> covered_beams = placed_in_both(all_before, all_after);
   const Vectors points = picked(all_after, covered_beams), points_before = picked(all_before, covered_beams);
-  const SpatialOrder order = spatial_order(points.view(), kSide);
+  const quality::SpatialOrder order = quality::spatial_order(points.view(), kSide);
   const LocalPlanes planes = local_planes(points.view(), order);
   const LocalPlanes planes_before =
-      local_planes(points_before.view(), spatial_order(points_before.view(), kSide));
+      local_planes(points_before.view(), quality::spatial_order(points_before.view(), kSide));
   const std::vector<std::uint32_t> chosen = voxel_sample(order, count);
 
   ShownCloud shown{.before = picked(points_before, chosen),
@@ -109,7 +109,7 @@ ShownCloud shown_cloud(const Cloud& cloud, std::size_t count) {
     points.y.push_back(double{point.y});
     points.z.push_back(double{point.z});
   }
-  const SpatialOrder order = spatial_order(points.view(), kSide);
+  const quality::SpatialOrder order = quality::spatial_order(points.view(), kSide);
   const LocalPlanes planes = local_planes(points.view(), order);
   const std::vector<std::uint32_t> chosen = voxel_sample(order, count);
   ShownCloud shown{.after = picked(points, chosen),
@@ -124,4 +124,4 @@ ShownCloud shown_cloud(const Cloud& cloud, std::size_t count) {
   return shown;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -11,7 +11,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// The points that a report shows, as a struct of arrays: the same beams before and after a calibration.
 struct ShownCloud {
@@ -32,10 +32,10 @@ struct ShownCloud {
 
 /// Places beams under both models and chooses at most `count` of them evenly over the surfaces that the
 /// second sees. Beams that the encoder readings do not cover under either are left out.
-ShownCloud shown_cloud(const Sample& sample, const SensorModel& before, const SensorModel& after,
+ShownCloud shown_cloud(const estimate::Sample& sample, const SensorModel& before, const SensorModel& after,
                        std::size_t count);
 
 /// The same of a cloud that is placed already.
 ShownCloud shown_cloud(const Cloud& cloud, std::size_t count);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -7,7 +7,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::report {
 
 /// Reads JSON that a run wrote, and makes something of it.
 /// @throws Error that names the file, if it is no JSON, or not what `use` expects
@@ -23,4 +23,4 @@ auto use_json(const std::filesystem::path& file, const Use& use) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

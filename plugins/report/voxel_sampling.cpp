@@ -5,7 +5,7 @@
 
 #include "plugins/report/cell_runs.hpp"
 
-namespace crisp {
+namespace crisp::report {
 namespace {
 
 std::size_t kept_under(const std::vector<CellRun>& cells, std::size_t cap) {
@@ -29,7 +29,7 @@ std::size_t largest_cap(const std::vector<CellRun>& cells, std::size_t count) {
 
 }  // namespace
 
-std::vector<std::uint32_t> voxel_sample(const SpatialOrder& order, std::size_t count) {
+std::vector<std::uint32_t> voxel_sample(const quality::SpatialOrder& order, std::size_t count) {
   const std::vector<CellRun> cells = cell_runs(order, 0);
   const std::size_t cap = largest_cap(cells, count);
   // The remainder below the cap: one more in the first cells that have one.
@@ -49,4 +49,4 @@ std::vector<std::uint32_t> voxel_sample(const SpatialOrder& order, std::size_t c
   return chosen;
 }
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/spatial_order.hpp"
 
-namespace crisp {
+namespace crisp::report {
 
 /// Thins points evenly over the surfaces that they lie on: voxel grid sampling with one cap on the points of
 /// a cell, as large as `count` allows. Beams crowd near the scanner; each cell there keeps as many as the
@@ -16,6 +16,6 @@ namespace crisp {
 ///
 /// @param order  n points along a Morton curve, with their cells
 /// @return at most `count` indices of points, along the curve; all n where there are no more
-std::vector<std::uint32_t> voxel_sample(const SpatialOrder& order, std::size_t count);
+std::vector<std::uint32_t> voxel_sample(const quality::SpatialOrder& order, std::size_t count);
 
-}  // namespace crisp
+}  // namespace crisp::report

@@ -10,7 +10,7 @@
 #include "pipeline/estimate/free_parameters.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// Result of a calibration.
@@ -27,10 +27,10 @@ void add(std::vector<std::string>& to, const std::vector<Unobservable>& unobserv
 
 /// calibrate.refine.
 /// @throws Error  as it does
-End refined(const SensorModel& start, const Sample& sample, const TrialSettings& settings) {
-  RefinementSettings refinement = settings.refinement;
+End refined(const SensorModel& start, const estimate::Sample& sample, const TrialSettings& settings) {
+  estimate::RefinementSettings refinement = settings.refinement;
   refinement.surfels.noise = settings.noise;
-  const Refinement found = refine_by_surfels(start, sample, refinement);
+  const estimate::Refinement found = estimate::refine_by_surfels(start, sample, refinement);
   End end{.model = found.outcome.model,
           .std_error = found.outcome.covariance.diagonal().cwiseSqrt(),
           .free = found.outcome.free,
@@ -41,12 +41,12 @@ End refined(const SensorModel& start, const Sample& sample, const TrialSettings&
 
 /// calibrate.rqe and calibrate.refine.
 /// @throws Error  as they do
-End calibrated(const SensorModel& start, const Sample& sample, const TrialSettings& settings,
+End calibrated(const SensorModel& start, const estimate::Sample& sample, const TrialSettings& settings,
                Measure& measure) {
-  RqeCalibrationSettings rqe = settings.rqe;
+  calibrate::RqeCalibrationSettings rqe = settings.rqe;
   rqe.full_field = settings.beams == BeamChoice::kAll;
   rqe.noise = settings.noise;
-  const Outcome minimum = calibrate_by_rqe(start, sample, measure, rqe);
+  const estimate::Outcome minimum = calibrate::calibrate_by_rqe(start, sample, measure, rqe);
   End end = refined(minimum.model, sample, settings);
   end.caveats.insert(end.caveats.begin(), minimum.caveats.begin(), minimum.caveats.end());
   add(end.caveats, minimum.unobservable);
@@ -56,17 +56,17 @@ End calibrated(const SensorModel& start, const Sample& sample, const TrialSettin
 /// Even draws of λ, τ, α and η of each laser over the range, about the truth.
 SensorModel drawn_start(const SensorModel& truth, const StartRange& range, std::uint64_t recording,
                         std::size_t number) {
-  RandomStream random(recording, "start " + std::to_string(number));
+  statistics::RandomStream random(recording, "start " + std::to_string(number));
   Eigen::VectorXd values = truth.values();
   for (std::size_t laser = 0; laser < truth.lasers(); ++laser) {
-    const auto value = [&](BaseSlot which) -> double& {
-      return values[static_cast<Eigen::Index>(slot(truth, laser, which))];
+    const auto value = [&](estimate::BaseSlot which) -> double& {
+      return values[static_cast<Eigen::Index>(estimate::slot(truth, laser, which))];
     };
     const double turn = random.uniform(-range.lambda, range.lambda);
-    if (laser > 0) value(kLambda) += turn;
-    value(kTau) = random.uniform(range.min_tau, range.max_tau);
-    value(kAlpha) += random.uniform(-range.alpha, range.alpha);
-    value(kEta) += random.uniform(-range.eta, range.eta);
+    if (laser > 0) value(estimate::kLambda) += turn;
+    value(estimate::kTau) = random.uniform(range.min_tau, range.max_tau);
+    value(estimate::kAlpha) += random.uniform(-range.alpha, range.alpha);
+    value(estimate::kEta) += random.uniform(-range.eta, range.eta);
   }
   SensorModel start = truth;
   start.set_values(values);
@@ -81,7 +81,7 @@ class Exploration {
 
   BasinRecording run(std::size_t starts) {
     const SensorModel truth(recording_.simulated.truth);
-    const Sample sample = recording_.sample();
+    const estimate::Sample sample = recording_.sample();
     BasinRecording result{.seed = seed_, .parameters = {}, .starts = {}, .caveats = {}, .failure = {}};
     try {
       const End optimum = refined(truth, sample, settings_.trial);
@@ -97,9 +97,9 @@ class Exploration {
   }
 
  private:
-  BasinStart explore(const SensorModel& start, const Sample& sample, const End& optimum) {
+  BasinStart explore(const SensorModel& start, const estimate::Sample& sample, const End& optimum) {
     BasinStart result{.recording = seed_, .start = {}, .farthest = {}, .caveats = {}};
-    const Eigen::VectorXd drawn = picked(start, optimum.free);
+    const Eigen::VectorXd drawn = estimate::picked(start, optimum.free);
     result.start.assign(drawn.begin(), drawn.end());
     try {
       const End end = calibrated(start, sample, settings_.trial, measure_);
@@ -148,4 +148,4 @@ std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const M
       });
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -10,13 +10,13 @@
 #include "plugins/study/parallel_runs.hpp"
 #include "plugins/study/study_part.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Range of a calibration's starts.
 struct StartRange {
-  double min_tau = 0;           ///< [m]
-  double max_tau = 0.5;         ///< [m]
-  double alpha = 20 * kDegree;  ///< [rad] to either side of the truth
+  double min_tau = 0;                 ///< [m]
+  double max_tau = 0.5;               ///< [m]
+  double alpha = 20 * data::kDegree;  ///< [rad] to either side of the truth
   double lambda =
       std::numbers::pi;  ///< [rad] to either side of the truth; of the first laser it is the gauge
   double eta = 0.1;      ///< [s] to either side of the truth
@@ -29,7 +29,7 @@ struct BasinSettings {
   std::size_t starts_per_recording = 20;  ///< then a new one is simulated
   double same = 3;               ///< [standard errors] ends that are no farther from one another are the same
   std::uint64_t first_seed = 1;  ///< of the first recording
-  Shard part;                    ///< which recordings are explored
+  batch::Shard part;             ///< which recordings are explored
   unsigned threads = 1;
 
   /// Number of recordings for all starts.
@@ -68,4 +68,4 @@ struct BasinRecording {
 std::vector<BasinRecording> explore_basin(const BasinSettings& settings, const MakeMeasure& make_measure,
                                           const StudyHooks& hooks = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

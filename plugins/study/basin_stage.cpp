@@ -10,17 +10,17 @@
 #include "plugins/study/rqe.hpp"
 #include "plugins/study/run_json.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 BasinStage::BasinStage() {
-  trial().truth = {.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04};
+  trial().truth = {.tau = 0.02, .alpha = 3 * data::kDegree, .lambda = 5 * data::kDegree, .eta = 0.04};
 }
 
 void BasinStage::describe(StageDescription<BasinStage>& d) {
   d.name("study.basin").summary("determines the calibration's basin of convergence");
   d.details(
       "Calibrates simulated recordings by calibrate.rqe and calibrate.refine from starts drawn evenly over the range: tau, alpha and eta of each laser, and lambda of all but the first. Counts how many end in the optimum at the truth (calibrate.refine alone, started at the truth), elsewhere with a caveat, an unobservable parameter or an error, and elsewhere without one. The truth of each recording is drawn up to 2 cm, 3 degrees, 5 degrees (lambda) and 40 ms from the rig's nominal values.");
-  describe_scene(d, &BasinStage::scene_);
+  simulate::describe_scene(d, &BasinStage::scene_);
   const auto trial = &BasinStage::trial;
   d.option("beams", trial, &TrialSettings::beams,
            "beams used: the paper's two in the plate's plane, or the whole field of view")
@@ -36,7 +36,7 @@ void BasinStage::describe(StageDescription<BasinStage>& d) {
   d.option("duration", trial, &TrialSettings::duration, "duration of each recording")
       .unit("s")
       .range(1, 1000);
-  describe_motion(d, &BasinStage::motion);
+  simulate::describe_motion(d, &BasinStage::motion);
   d.option("noise", trial, &TrialSettings::noise, "standard deviation of a range").unit("m").range(1e-5, 1);
   const auto range = &BasinSettings::range;
   d.option("min_tau", &BasinStage::settings_, range, &StartRange::min_tau, "smallest tau of a start")
@@ -65,7 +65,7 @@ void BasinStage::check(const RunSettings& run) const {
                         if (settings_.range.min_tau <= settings_.range.max_tau) return;
                         throw Error("min_tau is above max_tau", "give a `max_tau` above `min_tau`");
                       }),
-            [&] { make_motion(settings_.trial.motion, settings_.trial.duration, 1); });
+            [&] { simulate::make_motion(settings_.trial.motion, settings_.trial.duration, 1); });
 }
 
 void BasinStage::process(const Inputs&, Outputs&, Context& context) {
@@ -74,7 +74,7 @@ void BasinStage::process(const Inputs&, Outputs&, Context& context) {
   settings.threads = context.threads();
   settings.trial.rig = context.rig();
   settings.trial.scene = scene_.load(context);
-  if (part_.is_part()) settings.part = parse_shard(part_.part);
+  if (part_.is_part()) settings.part = batch::parse_shard(part_.part);
   extent_ = {.first_seed = settings.first_seed, .runs = settings.recordings()};
   const auto progress = [&](std::size_t done) {
     context.progress({.done = static_cast<double>(done),
@@ -103,4 +103,4 @@ void BasinStage::finish(Outputs&, Context& context) {
   context.wrote(file_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -10,7 +10,7 @@
 #include "plugins/study/basin.hpp"
 #include "plugins/study/part_file.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// `study.basin`: whether calibrations end in the same optimum from wherever they start, or add a caveat.
 class BasinStage final : public Stage {
@@ -23,14 +23,14 @@ class BasinStage final : public Stage {
 
  private:
   TrialSettings& trial() { return settings_.trial; }
-  MotionSettings& motion() { return settings_.trial.motion; }
+  simulate::MotionSettings& motion() { return settings_.trial.motion; }
 
   BasinSettings settings_;
-  SceneChoice scene_{.name = "paper", .file = {}};
+  simulate::SceneChoice scene_{.name = "paper", .file = {}};
   std::filesystem::path file_;
   StudyPart part_;
   StudyExtent extent_;  ///< recordings
   std::vector<BasinRecording> recordings_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -8,7 +8,7 @@
 #include "pipeline/data/counted.hpp"
 #include "plugins/study/parameter_kind.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 const char* word(Ending ending) {
@@ -64,8 +64,8 @@ std::string basin_text(const std::vector<BasinRecording>& recordings) {
   const auto line = [&](const char* what, std::size_t n) {
     return fmt::format("{:<46}{:>7}  {:>6.2f} %\n", what, n, percent * static_cast<double>(n));
   };
-  std::string text = fmt::format("{} on {}\n", counted(tally.starts, "start"),
-                                 counted(recordings.size() - tally.failed, "recording"));
+  std::string text = fmt::format("{} on {}\n", data::counted(tally.starts, "start"),
+                                 data::counted(recordings.size() - tally.failed, "recording"));
   text += line("ended in the optimum at the truth", tally.same);
   text += line("  of these with caveats", tally.same_with_caveats);
   text += line("elsewhere, with caveats", tally.with_caveats);
@@ -98,4 +98,4 @@ std::string basin_csv(const std::vector<BasinRecording>& recordings) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

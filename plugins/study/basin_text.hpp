@@ -6,7 +6,7 @@
 
 #include "plugins/study/basin.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Number of starts by their ending.
 struct BasinTally {
@@ -26,4 +26,4 @@ std::string basin_text(const std::vector<BasinRecording>& recordings);
 /// SI, `off` in standard errors.
 std::string basin_csv(const std::vector<BasinRecording>& recordings);
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -8,13 +8,13 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
-constexpr double kRight = 90 * kDegree;
+constexpr double kRight = 90 * data::kDegree;
 
 /// Indices of the beams of one laser that lie in the plate's plane.
-std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const FieldOfView& field) {
+std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const simulate::FieldOfView& field) {
   std::vector<std::uint16_t> found;
   for (const double theta : {-kRight, kRight}) {
     const double index = std::round((laser.mount + theta - field.first) / field.step);
@@ -30,14 +30,14 @@ std::vector<std::uint16_t> in_plane_of(const RigLaser& laser, const FieldOfView&
 }
 
 /// Only the beams that `wanted` lists for their laser.
-SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
-                               const std::vector<std::vector<std::uint16_t>>& requested) {
-  SimulatedMeasurements result{.beams = {},
-                               .surface = {},
-                               .cos_incidence = {},
-                               .plate = all.plate,
-                               .truth = all.truth,
-                               .no_echo = all.no_echo};
+simulate::SimulatedMeasurements narrowed(const simulate::SimulatedMeasurements& all,
+                                         const std::vector<std::vector<std::uint16_t>>& requested) {
+  simulate::SimulatedMeasurements result{.beams = {},
+                                         .surface = {},
+                                         .cos_incidence = {},
+                                         .plate = all.plate,
+                                         .truth = all.truth,
+                                         .no_echo = all.no_echo};
   result.beams.epoch_ns = all.beams.epoch_ns;
   for (std::size_t i = 0; i < all.beams.size(); ++i) {
     const auto& of_laser = requested[all.beams.laser[i]];
@@ -51,9 +51,10 @@ SimulatedMeasurements narrowed(const SimulatedMeasurements& all,
 
 }  // namespace
 
-SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, const Scene& scene,
-                                     const Motion& motion, const TermRegistry& terms) {
-  if (beams == BeamChoice::kAll) return simulate_measurements(scanner, scene, motion, terms);
+simulate::SimulatedMeasurements simulate_beams(BeamChoice beams, simulate::ScannerSettings scanner,
+                                               const simulate::Scene& scene, const simulate::Motion& motion,
+                                               const TermRegistry& terms) {
+  if (beams == BeamChoice::kAll) return simulate::simulate_measurements(scanner, scene, motion, terms);
   std::vector<std::vector<std::uint16_t>> requested;
   scanner.beams.clear();
   for (std::size_t i = 0; i < scanner.rig.lasers.size(); ++i) {
@@ -63,7 +64,7 @@ SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, 
   std::ranges::sort(scanner.beams);
   scanner.beams.erase(std::unique(scanner.beams.begin(), scanner.beams.end()), scanner.beams.end());
   // With differently mounted lasers, each fires the others' beams, too.
-  return narrowed(simulate_measurements(scanner, scene, motion, terms), requested);
+  return narrowed(simulate::simulate_measurements(scanner, scene, motion, terms), requested);
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

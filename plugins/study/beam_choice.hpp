@@ -3,7 +3,7 @@
 
 #include "grabbers/simulate/measurements.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// The beams of its lasers that a study uses.
 enum class BeamChoice {
@@ -13,7 +13,8 @@ enum class BeamChoice {
 
 /// simulate_measurements() of these beams alone.
 /// @throws Error if the beams in the plate's plane are wanted and a laser's field of view has none
-SimulatedMeasurements simulate_beams(BeamChoice beams, ScannerSettings scanner, const Scene& scene,
-                                     const Motion& motion, const TermRegistry& terms = {});
+simulate::SimulatedMeasurements simulate_beams(BeamChoice beams, simulate::ScannerSettings scanner,
+                                               const simulate::Scene& scene, const simulate::Motion& motion,
+                                               const TermRegistry& terms = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

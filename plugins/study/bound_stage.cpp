@@ -14,7 +14,7 @@
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/parameter_kind.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 nlohmann::json parameters_json(const SceneBound& bound, const std::optional<RefinementAccuracy>& refinement) {
@@ -41,7 +41,7 @@ nlohmann::json unobservable_json(const SceneBound& bound) {
   return json;
 }
 
-nlohmann::json planes_json(const SceneBound& bound, const Scene& scene) {
+nlohmann::json planes_json(const SceneBound& bound, const simulate::Scene& scene) {
   auto json = nlohmann::json::array();
   for (std::size_t s = 0; s < scene.things(); ++s) {
     if (bound.beams_on[s] > 0) {
@@ -60,55 +60,57 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
       "For comparison, `refine` adds the standard errors that calibrate.refine estimates on one such recording with noise.\n\n"
       "The scanner has the rig's nominal values, or those of `calibration`. The plate's encoder and the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. A second bound counts the steps of the rig's encoder as well, as normal noise of the plate's angle.\n\n"
       "A parameter counts as determined against the prior of calibrate.refine: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
-  describe_scene(d, &BoundStage::scene_);
+  simulate::describe_scene(d, &BoundStage::scene_);
   d.option("beams", &BoundStage::beams_,
            "beams used: the whole field of view, or the paper's two in the plate's plane")
       .choices({{"all", BeamChoice::kAll}, {"in_plane", BeamChoice::kInPlane}});
-  d.option("duration", &BoundStage::scanner_, &ScannerSettings::duration,
+  d.option("duration", &BoundStage::scanner_, &simulate::ScannerSettings::duration,
            "duration of the recording; from some ten seconds on errors decrease with its square root")
       .unit("s")
       .range(0.01, 100);
-  d.option("noise", &BoundStage::scanner_, &ScannerSettings::range, &RangeSettings::sigma,
+  d.option("noise", &BoundStage::scanner_, &simulate::ScannerSettings::range, &simulate::RangeSettings::sigma,
            "standard deviation of a range")
       .unit("m")
       .range(1e-6, 10);
-  describe_motion(d, &BoundStage::motion);
-  describe_truth(d, &BoundStage::truth_);
-  describe_field(d, &BoundStage::scanner_);
-  describe_kinds(d, &BoundStage::kinds_);
+  simulate::describe_motion(d, &BoundStage::motion);
+  simulate::describe_truth(d, &BoundStage::truth_);
+  simulate::describe_field(d, &BoundStage::scanner_);
+  simulate::describe_kinds(d, &BoundStage::kinds_);
   d.option("refine", &BoundStage::refine_,
            "whether to add the standard errors of calibrate.refine on a simulated recording");
   d.option("file", &BoundStage::file_, "output file of the bounds, CSV").writes();
 }
 
-std::vector<Effect> BoundStage::effects(const RunSettings& run) const {
-  return read_effects(truth_.effects, run.rig, recording_catalogue(known_terms(run)));
+std::vector<simulate::Effect> BoundStage::effects(const RunSettings& run) const {
+  return simulate::read_effects(truth_.effects, run.rig,
+                                simulate::recording_catalogue(simulate::known_terms(run)));
 }
 
 void BoundStage::check(const RunSettings& run) const {
   check_all(
       [&] {
         Calibration truth = truth_.drawn(run, run.seed);
-        add_terms(truth, effects(run), known_terms(run));
+        simulate::add_terms(truth, effects(run), simulate::known_terms(run));
       },
-      [&] { make_motion(scanner_.motion, scanner_.duration, run.seed); }, [&] { scanner_.field.beams(); },
+      [&] { simulate::make_motion(scanner_.motion, scanner_.duration, run.seed); },
+      [&] { scanner_.field.beams(); },
       [&] {
-        ScannerSettings planned = scanner_;
+        simulate::ScannerSettings planned = scanner_;
         planned.rig = run.rig;
         kinds_.apply(planned);
       });
 }
 
 void BoundStage::process(const Inputs&, Outputs&, Context& context) {
-  ScannerSettings scanner = scanner_;
+  simulate::ScannerSettings scanner = scanner_;
   scanner.rig = context.rig();
   kinds_.apply(scanner);
   scanner.seed = context.seed();
   scanner.truth = truth_.load(context, scanner.seed);
-  add_terms(scanner.truth, effects(context.run()), known_terms(context.run()));
-  const Scene scene = scene_.load(context);
-  const Motion motion = make_motion(scanner.motion, scanner.duration, scanner.seed);
-  const TermRegistry& terms = known_terms(context.run());
+  simulate::add_terms(scanner.truth, effects(context.run()), simulate::known_terms(context.run()));
+  const simulate::Scene scene = scene_.load(context);
+  const simulate::Motion motion = simulate::make_motion(scanner.motion, scanner.duration, scanner.seed);
+  const TermRegistry& terms = simulate::known_terms(context.run());
   context.progress(0, "bound");
   bound_ = scene_bound(scanner, scene, motion, beams_, terms);
   if (context.interrupted()) return;
@@ -119,7 +121,7 @@ void BoundStage::process(const Inputs&, Outputs&, Context& context) {
   report(scene, context);
 }
 
-void BoundStage::report(const Scene& scene, Context& context) const {
+void BoundStage::report(const simulate::Scene& scene, Context& context) const {
   context.report({{"scene", scene.name},
                   {"beams", bound_.beams},
                   {"no_echo", bound_.no_echo},
@@ -143,4 +145,4 @@ void BoundStage::finish(Outputs&, Context& context) {
   context.wrote(file_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

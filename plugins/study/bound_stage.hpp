@@ -11,7 +11,7 @@
 #include "plugins/study/refinement_accuracy.hpp"
 #include "plugins/study/scene_bound.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// `study.bound`: computes the Cramér-Rao bound of the scanner's parameters for a planned recording.
 class BoundStage final : public Stage {
@@ -24,15 +24,15 @@ class BoundStage final : public Stage {
 
  private:
   // Target of the options.
-  MotionSettings& motion() { return scanner_.motion; }
+  simulate::MotionSettings& motion() { return scanner_.motion; }
 
-  void report(const Scene& scene, Context& context) const;
-  std::vector<Effect> effects(const RunSettings& run) const;
+  void report(const simulate::Scene& scene, Context& context) const;
+  std::vector<simulate::Effect> effects(const RunSettings& run) const;
 
-  ScannerSettings scanner_;
-  SceneChoice scene_;
-  TruthChoice truth_;
-  KindChoice kinds_;
+  simulate::ScannerSettings scanner_;
+  simulate::SceneChoice scene_;
+  simulate::TruthChoice truth_;
+  simulate::KindChoice kinds_;
   BeamChoice beams_ = BeamChoice::kAll;
   bool refine_ = true;
   std::filesystem::path file_;
@@ -40,4 +40,4 @@ class BoundStage final : public Stage {
   std::optional<RefinementAccuracy> refinement_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::study

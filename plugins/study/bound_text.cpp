@@ -8,7 +8,7 @@
 
 #include "plugins/study/parameter_kind.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// The identifiable combination in place of an unobservable parameter.
@@ -67,4 +67,4 @@ std::string bound_csv(const SceneBound& bound, const std::optional<RefinementAcc
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

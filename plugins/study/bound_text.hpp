@@ -7,7 +7,7 @@
 #include "plugins/study/refinement_accuracy.hpp"
 #include "plugins/study/scene_bound.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// A bound for people: the least standard errors in mm, degrees and ms, those that calibrate.refine reaches,
 /// if that was tried, and what the recording leaves open.
@@ -18,4 +18,4 @@ std::string bound_text(const SceneBound& bound, const std::optional<RefinementAc
 /// place of an unobservable parameter, if there is one.
 std::string bound_csv(const SceneBound& bound, const std::optional<RefinementAccuracy>& refinement = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -5,7 +5,7 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// A line each with the cloud's points, blocks apart by two blank lines.
@@ -28,7 +28,7 @@ std::string surface(const FigureSettings& settings, const CostSurface& surface) 
       settings.sigma);
   for (std::size_t i = 0; i < settings.tau.steps; ++i) {
     for (std::size_t j = 0; j < settings.alpha.steps; ++j) {
-      text += fmt::format("{:.5f} {:.4f} {:.6f}\n", settings.tau.at(i), settings.alpha.at(j) / kDegree,
+      text += fmt::format("{:.5f} {:.4f} {:.6f}\n", settings.tau.at(i), settings.alpha.at(j) / data::kDegree,
                           surface.cost[i * settings.alpha.steps + j]);
     }
     text += "\n";
@@ -53,7 +53,7 @@ std::string optima(const Figures& figures) {
       "# Figure 6: minimum of RQE over tau and alpha; the truth is 0.2 m, 0 deg\n"
       "# sigma [m]  tau [m]  alpha [deg]\n";
   for (const Optimum& at : figures.optima) {
-    text += fmt::format("{:g} {:.6f} {:.5f}\n", at.sigma, at.tau, at.alpha / kDegree);
+    text += fmt::format("{:g} {:.6f} {:.5f}\n", at.sigma, at.tau, at.alpha / data::kDegree);
   }
   return text;
 }
@@ -67,7 +67,7 @@ std::map<std::string, std::string> figure_files(const FigureSettings& settings, 
       {"fig6_tau.dat", curves("Figure 6: RQE over tau with the true alpha, at several sigma", "tau [m]",
                               settings.tau, 1, settings.widths, figures.over_tau)},
       {"fig6_alpha.dat", curves("Figure 6: RQE over alpha with the true tau, at several sigma", "alpha [deg]",
-                                settings.alpha, kDegree, settings.widths, figures.over_alpha)},
+                                settings.alpha, data::kDegree, settings.widths, figures.over_alpha)},
       {"fig6_optimum.dat", optima(figures)},
       {"fig7_eta.dat",
        curves(
@@ -76,4 +76,4 @@ std::map<std::string, std::string> figure_files(const FigureSettings& settings, 
            "eta [s]", settings.lag, 1, settings.lag_widths, figures.over_lag)}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

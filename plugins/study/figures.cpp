@@ -9,24 +9,26 @@
 #include "plugins/calibrate/cloud_objective.hpp"
 #include "plugins/calibrate/rqe_minimizer.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
+
+using estimate::kEta;
 
 /// The parts of the figures, all of one recording.
 class Studio {
  public:
   Studio(const FigureSettings& settings, Measure& measure)
       : settings_(settings), measure_(measure), recording_(one_laser(settings)), truth_(recording_.truth) {
-    const Sample all{.beams = recording_.beams, .plate = &recording_.plate};
-    both_ = covered(all, settings.lag.first, settings.lag.last);
-    front_ = in_plane(both_, InPlaneSettings{}.half_width, Half::kFront);
+    const estimate::Sample all{.beams = recording_.beams, .plate = &recording_.plate};
+    both_ = estimate::covered(all, settings.lag.first, settings.lag.last);
+    front_ = estimate::in_plane(both_, calibrate::InPlaneSettings{}.half_width, estimate::Half::kFront);
   }
 
   CostSurface surface() {
     CostSurface surface;
     for (std::size_t i = 0; i < settings_.tau.steps; ++i) {
-      const SensorModel row = with_one(truth_, kTau, settings_.tau.at(i));
-      const auto costs = curve(row, kAlpha, settings_.alpha, both_, settings_.sigma);
+      const SensorModel row = estimate::with_one(truth_, estimate::kTau, settings_.tau.at(i));
+      const auto costs = curve(row, estimate::kAlpha, settings_.alpha, both_, settings_.sigma);
       surface.cost.insert(surface.cost.end(), costs.begin(), costs.end());
     }
     return surface;
@@ -44,8 +46,10 @@ class Studio {
     std::vector<Optimum> optima;
     for (const double sigma : settings_.widths) {
       SensorModel model = truth_;
-      minimize_rqe(model, both_, {kTau, kAlpha}, measure_, sigma, {.tau = 0.4}, {});
-      optima.push_back({.sigma = sigma, .tau = model.values()[kTau], .alpha = model.values()[kAlpha]});
+      calibrate::minimize_rqe(model, both_, {estimate::kTau, estimate::kAlpha}, measure_, sigma, {.tau = 0.4},
+                              {});
+      optima.push_back(
+          {.sigma = sigma, .tau = model.values()[estimate::kTau], .alpha = model.values()[estimate::kAlpha]});
     }
     return optima;
   }
@@ -62,40 +66,41 @@ class Studio {
     return {.eta = model.values()[kEta],
             .points = model.place(front_.beams, *front_.plate).points.topRows<2>()};
   }
-  BeamCloud before() const { return cloud(with_one(truth_, kEta, 0)); }
+  BeamCloud before() const { return cloud(estimate::with_one(truth_, kEta, 0)); }
   BeamCloud after() {
     constexpr double kSigma = 0.04;  // [m]
     const auto costs = curve(truth_, kEta, settings_.lag, front_, kSigma);
     const auto least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
-    SensorModel model = with_one(truth_, kEta, settings_.lag.at(least));
-    minimize_rqe(model, front_, {kEta}, measure_, kSigma, {.eta = 0.002}, {});
+    SensorModel model = estimate::with_one(truth_, kEta, settings_.lag.at(least));
+    calibrate::minimize_rqe(model, front_, {kEta}, measure_, kSigma, {.eta = 0.002}, {});
     return cloud(model);
   }
 
  private:
-  static SimulatedMeasurements one_laser(const FigureSettings& settings) {
-    ScannerSettings scanner = paper_scanner(settings.seed);
+  static simulate::SimulatedMeasurements one_laser(const FigureSettings& settings) {
+    simulate::ScannerSettings scanner = simulate::paper_scanner(settings.seed);
     scanner.rig.lasers.resize(1);
     scanner.truth = nominal_calibration(scanner.rig);
     scanner.truth.lasers[0].eta.value = settings.eta;
-    return simulate_measurements(scanner, paper_room());
+    return simulate::simulate_measurements(scanner, simulate::paper_room());
   }
 
   std::vector<double> curve(const SensorModel& model, std::size_t parameter, const Axis& axis,
-                            const Sample& sample, double sigma) {
+                            const estimate::Sample& sample, double sigma) {
     std::vector<double> costs;
     for (std::size_t i = 0; i < axis.steps; ++i) {
-      costs.push_back(model_quality(with_one(model, parameter, axis.at(i)), sample, measure_, sigma));
+      costs.push_back(calibrate::model_quality(estimate::with_one(model, parameter, axis.at(i)), sample,
+                                               measure_, sigma));
     }
     return costs;
   }
 
   const FigureSettings& settings_;
   Measure& measure_;
-  SimulatedMeasurements recording_;
+  simulate::SimulatedMeasurements recording_;
   SensorModel truth_;
-  Sample both_;
-  Sample front_;
+  estimate::Sample both_;
+  estimate::Sample front_;
 };
 
 }  // namespace
@@ -108,8 +113,8 @@ Figures make_figures(const FigureSettings& settings, Measure& measure,
       [&] { figures.before = studio.before(); },
       [&] { figures.after = studio.after(); },
       [&] { figures.surface = studio.surface(); },
-      [&] { figures.over_tau = studio.curves(kTau, settings.tau); },
-      [&] { figures.over_alpha = studio.curves(kAlpha, settings.alpha); },
+      [&] { figures.over_tau = studio.curves(estimate::kTau, settings.tau); },
+      [&] { figures.over_alpha = studio.curves(estimate::kAlpha, settings.alpha); },
       [&] { figures.optima = studio.optima(); },
       [&] { figures.over_lag = studio.over_lag(); }};
   for (const auto& part : parts) {
@@ -119,4 +124,4 @@ Figures make_figures(const FigureSettings& settings, Measure& measure,
   return figures;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

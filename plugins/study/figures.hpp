@@ -6,7 +6,7 @@
 
 #include "plugins/study/monte_carlo_trial.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Evenly spaced values from `first` to `last`, both included.
 struct Axis {
@@ -70,4 +70,4 @@ struct Figures {
 Figures make_figures(const FigureSettings& settings, Measure& measure,
                      const std::function<bool()>& interrupted = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

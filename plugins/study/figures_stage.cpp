@@ -8,7 +8,7 @@
 #include "plugins/study/figure_files.hpp"
 #include "plugins/study/rqe.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 void FiguresStage::describe(StageDescription<FiguresStage>& d) {
   d.name("study.figures").summary("computes the data of the paper's figures 4 to 7");
@@ -47,4 +47,4 @@ void FiguresStage::finish(Outputs&, Context& context) {
                             figures_.after.eta * 1e3));
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -8,7 +8,7 @@
 
 #include "plugins/study/figures.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// `study.figures`: the paper's figures 4 to 7 as data to be plotted.
 class FiguresStage final : public Stage {
@@ -24,4 +24,4 @@ class FiguresStage final : public Stage {
   std::filesystem::path folder_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/monte_carlo.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 std::vector<MonteCarloTrial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
                                         const StudyHooks& hooks) {
@@ -11,4 +11,4 @@ std::vector<MonteCarloTrial> run_trials(const MonteCarloSettings& settings, cons
       });
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

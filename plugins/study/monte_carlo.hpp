@@ -7,13 +7,13 @@
 #include "plugins/study/parallel_runs.hpp"
 #include "plugins/study/study_part.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 struct MonteCarloSettings {
   TrialSettings trial;
   std::uint64_t first_seed = 1;  ///< run k has the seed first_seed + k
   std::size_t runs = 1500;
-  Shard part;  ///< which of them are done
+  batch::Shard part;  ///< which of them are done
   unsigned threads = 1;
 };
 
@@ -22,4 +22,4 @@ struct MonteCarloSettings {
 std::vector<MonteCarloTrial> run_trials(const MonteCarloSettings& settings, const MakeMeasure& make_measure,
                                         const StudyHooks& hooks = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -15,7 +15,7 @@
 #include "plugins/study/run_json.hpp"
 #include "plugins/study/table.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// Null without successful runs.
@@ -53,7 +53,7 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
   d.details(
       "By default section 5.2 of Sheehan, Harrison and Newman: the two beams of each laser in the plate's plane, in a room of upright walls; tau is 0.20 m, alpha is 0, lambda starts up to half a turn off. Other scenes and the whole field of view are options. The table compares two estimators, the optimum of RQE as in the paper and the least squares against flat surfaces that follow by default, with the paper's figures and with the Cramer-Rao bound for the same beams and an unknown scene. Each run has its own seed, from --seed on, which alone determines its result.\n\n"
       "`estimators: refined` skips RQE, which takes half of the time or more, and starts the refinement where RQE would have ended: up to 5 mm, 0.7 degrees (alpha, lambda) and 0.3 ms off the truth. Such runs do not test whether RQE converges.");
-  describe_scene(d, &MonteCarloStage::scene_);
+  simulate::describe_scene(d, &MonteCarloStage::scene_);
   d.option("beams", &MonteCarloStage::trial, &TrialSettings::beams,
            "beams used: the paper's two in the plate's plane, or the whole field of view")
       .choices({{"in_plane", BeamChoice::kInPlane}, {"all", BeamChoice::kAll}});
@@ -68,13 +68,13 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
   d.option("duration", &MonteCarloStage::trial, &TrialSettings::duration, "duration of each recording")
       .unit("s")
       .range(1, 1000);
-  describe_motion(d, &MonteCarloStage::motion);
+  simulate::describe_motion(d, &MonteCarloStage::motion);
   d.option("motion_seed", &MonteCarloStage::trial, &TrialSettings::motion_seed,
            "seed of one plate motion for all runs; auto: each run draws its own");
   d.option("noise", &MonteCarloStage::trial, &TrialSettings::noise, "standard deviation of a range")
       .unit("m")
       .range(1e-5, 1);
-  describe_realism(d, &MonteCarloStage::realism_);
+  simulate::describe_realism(d, &MonteCarloStage::realism_);
   d.option(
       "effects", &MonteCarloStage::effects_,
       "error effects of the simulated lasers, unknown to the estimators: `{noise.mixed_pixels: {divergence: 15mrad, aperture: 8mm}}`, named as in `crisp effects`");
@@ -83,18 +83,19 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
        "fraction of ranges that are replaced by outliers: four fifths of them nearer, the others up to 5 m farther")
       .unit("1")
       .range(0, 1);
-  d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &NominalErrors::eta,
+  d.option("eta", &MonteCarloStage::trial, &TrialSettings::truth, &simulate::NominalErrors::eta,
            "largest true lag, drawn around 0, where RQE starts")
       .unit("s")
       .range(0, 0.09);
-  d.option("tau_off", &MonteCarloStage::start, &NominalErrors::tau, "largest error of tau at RQE's start")
+  d.option("tau_off", &MonteCarloStage::start, &simulate::NominalErrors::tau,
+           "largest error of tau at RQE's start")
       .unit("m")
       .range(0, 0.1);
-  d.option("alpha_off", &MonteCarloStage::start, &NominalErrors::alpha,
+  d.option("alpha_off", &MonteCarloStage::start, &simulate::NominalErrors::alpha,
            "largest error of alpha at RQE's start")
       .unit("rad")
       .range(0, 0.3);
-  d.option("lambda_off", &MonteCarloStage::start, &NominalErrors::lambda,
+  d.option("lambda_off", &MonteCarloStage::start, &simulate::NominalErrors::lambda,
            "largest error of lambda at RQE's start")
       .unit("rad")
       .range(0, 3.2);
@@ -109,7 +110,7 @@ void MonteCarloStage::describe(StageDescription<MonteCarloStage>& d) {
 }
 
 void MonteCarloStage::check(const RunSettings& run) const {
-  const MotionSettings& motion = settings_.trial.motion;
+  const simulate::MotionSettings& motion = settings_.trial.motion;
   check_all([&] { check_part(part_, run); }, [&] { check_lasers(settings_.trial, run.rig); },
             of_option("sigma",
                       [&] {
@@ -117,27 +118,29 @@ void MonteCarloStage::check(const RunSettings& run) const {
                         throw Error("the kernel width must decrease", "write the larger sigma first");
                       }),
             [&] {
-              const bool steady = motion.kind == MotionKind::constant ||
-                                  (motion.kind == MotionKind::varying && motion.min_rate == motion.max_rate);
+              const bool steady =
+                  motion.kind == simulate::MotionKind::constant ||
+                  (motion.kind == simulate::MotionKind::varying && motion.min_rate == motion.max_rate);
               if (!steady) return;
               throw Error("a plate at constant speed does not distinguish eta from lambda",
                           "let max_rate be larger than min_rate, or choose another motion");
             },
-            [&] { make_motion(motion, settings_.trial.duration, 1); }, [&] { check_effects(run); });
+            [&] { simulate::make_motion(motion, settings_.trial.duration, 1); }, [&] { check_effects(run); });
 }
 
 void MonteCarloStage::check_effects(const RunSettings& run) const {
   TrialSettings trial = settings_.trial;
   trial.rig = run.rig;
-  effects_of_real_devices(realism_.devices, run.rig, laser_catalogue(known_terms(run)));
+  simulate::effects_of_real_devices(realism_.devices, run.rig,
+                                    simulate::laser_catalogue(simulate::known_terms(run)));
   use_effects(trial, run);
 }
 
 void MonteCarloStage::use_realism(TrialSettings& trial, Context& context) const {
   if (realism_.empty()) return;
-  const auto catalogue = laser_catalogue(known_terms(context.run()));
-  RecordingSettings recording{.scanner = {.rig = trial.rig}};
-  apply_device_effects(realism_.load(catalogue, context), recording);
+  const auto catalogue = simulate::laser_catalogue(simulate::known_terms(context.run()));
+  simulate::RecordingSettings recording{.scanner = {.rig = trial.rig}};
+  simulate::apply_device_effects(realism_.load(catalogue, context), recording);
   trial.laser_effects = recording.scanner.laser_effects;
   trial.counted_noise = noise_in(trial, context.seed());
   context.print(fmt::format("ranges have {:.2f} mm (RMS) of noise with the measured devices",
@@ -147,8 +150,10 @@ void MonteCarloStage::use_realism(TrialSettings& trial, Context& context) const 
 
 void MonteCarloStage::use_effects(TrialSettings& trial, const RunSettings& run) const {
   if (effects_.empty()) return;
-  RecordingSettings recording{.scanner = {.rig = trial.rig, .laser_effects = trial.laser_effects}};
-  apply_device_effects(read_effects(effects_, trial.rig, laser_catalogue(known_terms(run))), recording);
+  simulate::RecordingSettings recording{.scanner = {.rig = trial.rig, .laser_effects = trial.laser_effects}};
+  simulate::apply_device_effects(
+      simulate::read_effects(effects_, trial.rig, simulate::laser_catalogue(simulate::known_terms(run))),
+      recording);
   trial.laser_effects = recording.scanner.laser_effects;
 }
 
@@ -162,7 +167,7 @@ void MonteCarloStage::process(const Inputs&, Outputs&, Context& context) {
   use_effects(settings.trial, context.run());
   settings.trial.rqe.in_plane.sigma_from = sigma_[0];
   settings.trial.rqe.in_plane.sigma_to = sigma_[1];
-  if (part_.is_part()) settings.part = parse_shard(part_.part);
+  if (part_.is_part()) settings.part = batch::parse_shard(part_.part);
   extent_ = {.first_seed = settings.first_seed, .runs = settings.runs};
   const auto progress = [&](std::size_t done) {
     context.progress({.done = static_cast<double>(done),
@@ -199,4 +204,4 @@ void MonteCarloStage::finish(Outputs&, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -11,7 +11,7 @@
 #include "plugins/study/monte_carlo.hpp"
 #include "plugins/study/part_file.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// `study.monte_carlo`: makes Table 1 of the paper anew, from simulated recordings.
 class MonteCarloStage final : public Stage {
@@ -26,8 +26,8 @@ class MonteCarloStage final : public Stage {
  private:
   // Target of the options.
   TrialSettings& trial() { return settings_.trial; }
-  MotionSettings& motion() { return settings_.trial.motion; }
-  NominalErrors& start() { return settings_.trial.start; }
+  simulate::MotionSettings& motion() { return settings_.trial.motion; }
+  simulate::NominalErrors& start() { return settings_.trial.start; }
 
   /// Has the lasers scatter as real ones were measured to, if any are named.
   void use_realism(TrialSettings& trial, Context& context) const;
@@ -37,8 +37,8 @@ class MonteCarloStage final : public Stage {
   void use_effects(TrialSettings& trial, const RunSettings& run) const;
 
   MonteCarloSettings settings_;
-  SceneChoice scene_{.name = "paper", .file = {}};
-  RealismChoice realism_;
+  simulate::SceneChoice scene_{.name = "paper", .file = {}};
+  simulate::RealismChoice realism_;
   OptionGroups effects_;
   std::vector<double> sigma_ = {0.5, 0.1};
   std::filesystem::path runs_file_;
@@ -48,4 +48,4 @@ class MonteCarloStage final : public Stage {
   std::vector<MonteCarloTrial> trials_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::study

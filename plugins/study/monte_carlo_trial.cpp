@@ -17,13 +17,13 @@
 #include "plugins/study/outliers.hpp"
 #include "plugins/study/scene_bound.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
-ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
-  ScannerSettings scanner{.rig = settings.rig, .seed = seed};
+simulate::ScannerSettings scanner_of(const TrialSettings& settings, std::uint64_t seed) {
+  simulate::ScannerSettings scanner{.rig = settings.rig, .seed = seed};
   scanner.rig.lasers.resize(settings.lasers);
-  scanner.truth = draw_truth(nominal_calibration(scanner.rig), settings.truth, seed);
+  scanner.truth = simulate::draw_truth(nominal_calibration(scanner.rig), settings.truth, seed);
   scanner.duration = settings.duration;
   scanner.range.sigma = settings.noise;
   scanner.range.quantum = settings.quantum;
@@ -36,20 +36,20 @@ double counted_noise(const TrialSettings& settings) {
   return settings.counted_noise.value_or(settings.noise);
 }
 
-Motion motion_of(const TrialSettings& settings, std::uint64_t seed) {
-  return make_motion(settings.motion, settings.duration, settings.motion_seed.value_or(seed));
+simulate::Motion motion_of(const TrialSettings& settings, std::uint64_t seed) {
+  return simulate::make_motion(settings.motion, settings.duration, settings.motion_seed.value_or(seed));
 }
 
 Calibration start_of(const TrialSettings& settings, const Calibration& truth, std::uint64_t seed) {
-  if (settings.estimators == Estimators::kRefined) return draw_truth(truth, settings.near, seed);
-  Calibration start = draw_truth(truth, settings.start, seed);
+  if (settings.estimators == Estimators::kRefined) return simulate::draw_truth(truth, settings.near, seed);
+  Calibration start = simulate::draw_truth(truth, settings.start, seed);
   for (auto& laser : start.lasers) laser.eta.value = 0;
   return start;
 }
 
 /// The least standard errors for exactly this recording's geometry.
 SceneBound bound_of(const TrialSettings& settings, std::uint64_t seed) {
-  ScannerSettings scanner = scanner_of(settings, seed);
+  simulate::ScannerSettings scanner = scanner_of(settings, seed);
   scanner.range.sigma = counted_noise(settings);
   return scene_bound(scanner, settings.scene, motion_of(settings, seed), settings.beams);
 }
@@ -66,23 +66,25 @@ Eigen::VectorXd errors(const SensorModel& found, const SensorModel& truth,
 }
 
 /// The minimum of RQE.
-SensorModel rqe_minimizer(const SensorModel& start, const Sample& sample,
+SensorModel rqe_minimizer(const SensorModel& start, const estimate::Sample& sample,
                           const std::vector<std::size_t>& free, const TrialSettings& settings,
                           Measure& measure) {
-  if (settings.beams == BeamChoice::kAll) return calibrate_by_rqe(start, sample, measure, settings.rqe).model;
+  if (settings.beams == BeamChoice::kAll)
+    return calibrate::calibrate_by_rqe(start, sample, measure, settings.rqe).model;
   SensorModel model = start;
-  const LagRange lag = lag_range(model, settings.rqe.in_plane.range.eta);
-  calibrate_in_plane(model, free, covered(sample, lag.earliest, lag.latest), measure, settings.rqe.in_plane);
+  const estimate::LagRange lag = estimate::lag_range(model, settings.rqe.in_plane.range.eta);
+  calibrate::calibrate_in_plane(model, free, estimate::covered(sample, lag.earliest, lag.latest), measure,
+                                settings.rqe.in_plane);
   return model;
 }
 
 /// Least squares against flat surfaces, from where RQE ended.
-Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample& sample,
+Estimate refine(const SensorModel& start, const SensorModel& truth, const estimate::Sample& sample,
                 const std::vector<std::size_t>& free, const TrialSettings& settings) {
   try {
-    RefinementSettings knowing = settings.refinement;
+    estimate::RefinementSettings knowing = settings.refinement;
     knowing.surfels.noise = counted_noise(settings);
-    const Refinement found = refine_by_surfels(start, sample, knowing);
+    const estimate::Refinement found = estimate::refine_by_surfels(start, sample, knowing);
     if (found.outcome.free != free) return {.failure = "the refinement held some parameters"};
     if (!found.converged) return {.failure = "the refinement did not converge"};
     return {.error = errors(found.outcome.model, truth, free),
@@ -95,15 +97,15 @@ Estimate refine(const SensorModel& start, const SensorModel& truth, const Sample
 /// The plate's motion as the clock stages make it of its readings.
 PlateTrajectory as_aligned(const PlateTrajectory& read, const RigPlate& plate) {
   const double step = std::abs(plate.angle_per_count());
-  auto angles = between_steps(read.times(), read.angles(), step, kEncoderSmoothing);
+  auto angles = data::between_steps(read.times(), read.angles(), step, kEncoderSmoothing);
   return {read.epoch_ns(), {read.times().begin(), read.times().end()}, std::move(angles), read.max_gap()};
 }
 
 }  // namespace
 
 TrialSettings::TrialSettings()
-    : start{.tau = 0.02, .alpha = 3 * kDegree, .lambda = std::numbers::pi, .eta = 0},
-      near{.tau = 0.005, .alpha = 0.7 * kDegree, .lambda = 0.7 * kDegree, .eta = 3e-4} {}
+    : start{.tau = 0.02, .alpha = 3 * data::kDegree, .lambda = std::numbers::pi, .eta = 0},
+      near{.tau = 0.005, .alpha = 0.7 * data::kDegree, .lambda = 0.7 * data::kDegree, .eta = 3e-4} {}
 
 void check_lasers(const TrialSettings& settings, const Rig& rig) {
   if (settings.lasers <= rig.lasers.size()) return;
@@ -112,7 +114,7 @@ void check_lasers(const TrialSettings& settings, const Rig& rig) {
 }
 
 TrialRecording record(const TrialSettings& settings, std::uint64_t seed) {
-  const ScannerSettings scanner = scanner_of(settings, seed);
+  const simulate::ScannerSettings scanner = scanner_of(settings, seed);
   TrialRecording recording{
       .simulated = simulate_beams(settings.beams, scanner, settings.scene, motion_of(settings, seed)),
       .start = start_of(settings, scanner.truth, seed)};
@@ -122,8 +124,8 @@ TrialRecording record(const TrialSettings& settings, std::uint64_t seed) {
 }
 
 double noise_in(const TrialSettings& settings, std::uint64_t seed) {
-  const ScannerSettings scanner = scanner_of(settings, seed);
-  const Motion motion = motion_of(settings, seed);
+  const simulate::ScannerSettings scanner = scanner_of(settings, seed);
+  const simulate::Motion motion = motion_of(settings, seed);
   const auto noisy = simulate_beams(settings.beams, scanner, settings.scene, motion).beams;
   const auto exact = simulate_beams(settings.beams, without_noise(scanner), settings.scene, motion).beams;
   std::map<std::pair<std::uint16_t, double>, float> exactly;
@@ -145,9 +147,9 @@ MonteCarloTrial run_trial(const TrialSettings& settings, std::uint64_t seed,
                           const MakeMeasure& make_measure) {
   const TrialRecording recording = record(settings, seed);
   const SensorModel truth(recording.simulated.truth);
-  const Sample sample = recording.sample();
+  const estimate::Sample sample = recording.sample();
   SensorModel model(recording.start);
-  const auto free = free_parameters(model, sample.beams, {}).free;
+  const auto free = estimate::free_parameters(model, sample.beams, {}).free;
   const SceneBound bound = bound_of(settings, seed);
   MonteCarloTrial trial{.seed = seed, .bound = bound.std_errors, .bound_with_steps = bound.with_steps};
   for (const auto parameter : free) trial.parameters.push_back(truth.names()[parameter]);
@@ -160,4 +162,4 @@ MonteCarloTrial run_trial(const TrialSettings& settings, std::uint64_t seed,
   return trial;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

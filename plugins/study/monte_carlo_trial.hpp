@@ -16,7 +16,7 @@
 #include "plugins/calibrate/rqe_calibration.hpp"
 #include "plugins/study/beam_choice.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// The estimators of a recording.
 enum class Estimators {
@@ -26,24 +26,26 @@ enum class Estimators {
 
 /// One calibration of a simulated recording; by default that of Sheehan, Harrison and Newman, section 5.2.
 struct TrialSettings {
-  Scene scene = paper_room();
+  simulate::Scene scene = simulate::paper_room();
   BeamChoice beams = BeamChoice::kInPlane;
   Rig rig = default_rig();
   std::size_t lasers = 3;                    ///< of the rig's, at least 1
   double duration = 10;                      ///< [s]
-  MotionSettings motion;                     ///< of the plate
+  simulate::MotionSettings motion;           ///< of the plate
   std::optional<std::uint64_t> motion_seed;  ///< the motion of all runs; none: each run draws its own
   double noise = 0.012;                      ///< [m] standard deviation of a range
   double quantum = 0.001;                    ///< [m] ranges are multiples of it
-  std::vector<LaserEffects> laser_effects;   ///< one a laser of the rig: noise of its own; empty: none
-  std::optional<double> counted_noise;       ///< [m] that estimators and bound count on; none: `noise`
-  double outliers = 0;                       ///< share of the ranges that are: see add_outliers()
-  NominalErrors truth{.eta = 0.04};          ///< how far the truth lies off the rig at most
+  std::vector<simulate::LaserEffects>
+      laser_effects;                           ///< one a laser of the rig: noise of its own; empty: none
+  std::optional<double> counted_noise;         ///< [m] that estimators and bound count on; none: `noise`
+  double outliers = 0;                         ///< share of the ranges that are: see add_outliers()
+  simulate::NominalErrors truth{.eta = 0.04};  ///< how far the truth lies off the rig at most
   Estimators estimators = Estimators::kBoth;
-  NominalErrors start;  ///< how far off the start of RQE is at most; its η is 0
-  NominalErrors near;   ///< how far off the refinement starts at most where RQE is left out: where RQE ends
-  RqeCalibrationSettings rqe;
-  RefinementSettings refinement;
+  simulate::NominalErrors start;  ///< how far off the start of RQE is at most; its η is 0
+  simulate::NominalErrors
+      near;  ///< how far off the refinement starts at most where RQE is left out: where RQE ends
+  calibrate::RqeCalibrationSettings rqe;
+  estimate::RefinementSettings refinement;
 
   TrialSettings();
 };
@@ -53,9 +55,9 @@ void check_lasers(const TrialSettings& settings, const Rig& rig);
 
 /// A simulated recording.
 struct TrialRecording {
-  SimulatedMeasurements simulated;
+  simulate::SimulatedMeasurements simulated;
   Calibration start;
-  Sample sample() const { return {.beams = simulated.beams, .plate = &simulated.plate}; }
+  estimate::Sample sample() const { return {.beams = simulated.beams, .plate = &simulated.plate}; }
 };
 
 /// True: the rig's nominal τ, α and λ, η drawn. The start is drawn around it.
@@ -86,4 +88,4 @@ struct MonteCarloTrial {
 using MakeMeasure = std::function<std::unique_ptr<Measure>()>;
 MonteCarloTrial run_trial(const TrialSettings& settings, std::uint64_t seed, const MakeMeasure& make_measure);
 
-}  // namespace crisp
+}  // namespace crisp::study

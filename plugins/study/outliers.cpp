@@ -5,13 +5,13 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 void add_outliers(Measurements& beams, double share, std::uint64_t seed) {
   constexpr double kBefore = 0.8;   // of the outliers
   constexpr double kNearest = 0.3;  // [m]
   constexpr double kBehind = 5;     // [m]
-  RandomStream random(seed, "outliers");
+  statistics::RandomStream random(seed, "outliers");
   for (float& range : beams.range) {
     if (!random.chance(share)) continue;
     const double hit = std::max(kNearest, double{range});
@@ -20,4 +20,4 @@ void add_outliers(Measurements& beams, double share, std::uint64_t seed) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

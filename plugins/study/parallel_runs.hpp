@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::study {
 
 /// Hooks to watch and stop the work from outside.
 struct StudyHooks {
@@ -93,4 +93,4 @@ std::vector<Result> run_in_parallel(std::size_t runs, unsigned threads, const St
   return all.take();
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-namespace crisp {
+namespace crisp::study {
 
 /// Name, unit and format of the parameters λ, τ, α or η for people.
 struct ParameterKind {
@@ -20,4 +20,4 @@ std::span<const ParameterKind> parameter_kinds();
 /// The kind of a parameter such as "laser1.tau".
 const ParameterKind& kind_of(const std::string& parameter);
 
-}  // namespace crisp
+}  // namespace crisp::study

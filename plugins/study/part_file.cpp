@@ -14,7 +14,7 @@
 #include "pipeline/data/counted.hpp"
 #include "pipeline/files/json_text.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,7 +54,7 @@ void require_all(const std::map<std::uint64_t, Json>& found, const StudyExtent& 
   }
   if (missing == 0) return;
   throw Error(fmt::format("{} of the study are missing in {}, the first has the seed {}",
-                          counted(missing, "run"), folder.string(), first),
+                          data::counted(missing, "run"), folder.string(), first),
               "run the missing parts with --shard i/n; a part that was run ends at once");
 }
 
@@ -62,7 +62,7 @@ void require_all(const std::map<std::uint64_t, Json>& found, const StudyExtent& 
 
 void check_part(const StudyPart& part, const RunSettings& run) {
   if (!part.is_part()) return;
-  static_cast<void>(parse_shard(part.part));
+  static_cast<void>(batch::parse_shard(part.part));
   if (part.is_merge()) throw Error("a part of a study does not merge the parts", "give `part` or `merge`");
   if (run.output.empty()) throw Error("a part of a study has no folder for its results", "give one with -o");
 }
@@ -70,7 +70,8 @@ void check_part(const StudyPart& part, const RunSettings& run) {
 std::optional<StudyResults> read_own_part(const Context& context, const StudyPart& part,
                                           const StudyExtent& extent) {
   auto results = results_in(context.run().output / kPartFile, part.key);
-  if (!results || results->size() != share_of(parse_shard(part.part), extent.runs)) return std::nullopt;
+  if (!results || results->size() != share_of(batch::parse_shard(part.part), extent.runs))
+    return std::nullopt;
   return results;
 }
 
@@ -78,10 +79,11 @@ void write_own_part(Context& context, const StudyPart& part, const StudyExtent& 
                     const StudyResults& results) {
   const Json json = {{"key", part.key}, {"part", part.part}, {"runs", extent.runs}, {"results", results}};
   const fs::path file = context.run().output / kPartFile;
-  write_file(file, json_text(json) + "\n");
+  write_file(file, files::json_text(json) + "\n");
   context.wrote(file);
   context.report({{"runs", results.size()}});
-  context.print(fmt::format("part {}: {} of {}", part.part, results.size(), counted(extent.runs, "run")));
+  context.print(
+      fmt::format("part {}: {} of {}", part.part, results.size(), data::counted(extent.runs, "run")));
 }
 
 StudyResults merge_parts(Context& context, const StudyPart& part, const StudyExtent& extent) {
@@ -104,4 +106,4 @@ StudyResults merge_parts(Context& context, const StudyPart& part, const StudyExt
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -12,7 +12,7 @@
 
 #include "plugins/study/study_part.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// All runs of a study: run k has the seed first_seed + k.
 struct StudyExtent {
@@ -66,4 +66,4 @@ bool write_if_part(Context& context, const StudyPart& part, const StudyExtent& e
   return true;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

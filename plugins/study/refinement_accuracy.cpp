@@ -9,11 +9,11 @@
 
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// The errors of `parameters`, as far as they were turned.
-Eigen::VectorXd errors_of(const Outcome& outcome, const std::vector<std::string>& parameters) {
+Eigen::VectorXd errors_of(const estimate::Outcome& outcome, const std::vector<std::string>& parameters) {
   Eigen::VectorXd errors = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(parameters.size()),
                                                      std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
@@ -26,16 +26,17 @@ Eigen::VectorXd errors_of(const Outcome& outcome, const std::vector<std::string>
 
 }  // namespace
 
-RefinementAccuracy refinement_accuracy(const ScannerSettings& scanner, const Scene& scene,
-                                       const Motion& motion, BeamChoice beams,
+RefinementAccuracy refinement_accuracy(const simulate::ScannerSettings& scanner, const simulate::Scene& scene,
+                                       const simulate::Motion& motion, BeamChoice beams,
                                        const std::vector<std::string>& parameters,
                                        const TermRegistry& terms) {
   const auto simulated = simulate_beams(beams, scanner, scene, motion, terms);
-  const Sample sample{.beams = simulated.beams, .plate = &simulated.plate};
-  RefinementSettings settings;
+  const estimate::Sample sample{.beams = simulated.beams, .plate = &simulated.plate};
+  estimate::RefinementSettings settings;
   settings.surfels.noise = scanner.range.sigma;
   try {
-    const Refinement found = refine_by_surfels(SensorModel(simulated.truth, terms), sample, settings);
+    const estimate::Refinement found =
+        estimate::refine_by_surfels(SensorModel(simulated.truth, terms), sample, settings);
     return {.std_errors = errors_of(found.outcome, parameters),
             .beams = found.beams,
             .surfaces = found.surfels,
@@ -45,4 +46,4 @@ RefinementAccuracy refinement_accuracy(const ScannerSettings& scanner, const Sce
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

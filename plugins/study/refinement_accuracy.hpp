@@ -7,7 +7,7 @@
 
 #include "plugins/study/beam_choice.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Result of calibrate.refine for a recording.
 struct RefinementAccuracy {
@@ -22,9 +22,9 @@ struct RefinementAccuracy {
 /// parts, and the safety against outliers.
 ///
 /// @param parameters  whose errors are wanted, in this order: SceneBound::parameters
-RefinementAccuracy refinement_accuracy(const ScannerSettings& scanner, const Scene& scene,
-                                       const Motion& motion, BeamChoice beams,
+RefinementAccuracy refinement_accuracy(const simulate::ScannerSettings& scanner, const simulate::Scene& scene,
+                                       const simulate::Motion& motion, BeamChoice beams,
                                        const std::vector<std::string>& parameters,
                                        const TermRegistry& terms = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -6,7 +6,7 @@
 #include "plugins/study/figures_stage.hpp"
 #include "plugins/study/monte_carlo_stage.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 void register_study(Registrar& registrar) {
   registrar.stage<BasinStage>();
@@ -15,4 +15,4 @@ void register_study(Registrar& registrar) {
   registrar.stage<MonteCarloStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

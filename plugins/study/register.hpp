@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::study {
 
 void register_study(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -6,7 +6,7 @@
 
 #include "plugins/study/monte_carlo_trial.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Makes a new RQE for each run: a reused one may differ in its rounding.
 inline MakeMeasure rqe_maker(const RunSettings& run) {
@@ -15,4 +15,4 @@ inline MakeMeasure rqe_maker(const RunSettings& run) {
   };
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 using Json = nlohmann::json;
@@ -112,4 +112,4 @@ BasinRecording basin_of(const Json& json) {
   return recording;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -6,7 +6,7 @@
 #include "plugins/study/basin.hpp"
 #include "plugins/study/monte_carlo_trial.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// A run's result as JSON and back, to the bit: what is computed of it is the same as of the run itself.
 nlohmann::json trial_json(const MonteCarloTrial& trial);
@@ -14,4 +14,4 @@ MonteCarloTrial trial_of(const nlohmann::json& json);
 nlohmann::json basin_json(const BasinRecording& recording);
 BasinRecording basin_of(const nlohmann::json& json);
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -7,7 +7,7 @@
 
 #include "plugins/study/beam_choice.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// How well a recording could determine a calibration at best.
 struct SceneBound {
@@ -26,7 +26,7 @@ struct SceneBound {
 };
 
 /// The scanner with exact ranges and an exact encoder; its mirrors and where its beams mix are the same.
-ScannerSettings without_noise(ScannerSettings scanner);
+simulate::ScannerSettings without_noise(simulate::ScannerSettings scanner);
 
 /// The bound for a scanner at a scene: each of its surfaces counts as a plane of its own, as unknown as the
 /// parameters. The ranges' noise is `scanner.range.sigma`; their steps count as exact, and so does the
@@ -36,7 +36,7 @@ ScannerSettings without_noise(ScannerSettings scanner);
 /// @param motion   of the plate, in place of `scanner.motion`
 /// @param terms    that `scanner.truth` names
 /// @throws Error   if no beam meets anything, or the settings make no sense
-SceneBound scene_bound(const ScannerSettings& scanner, const Scene& scene, const Motion& motion,
-                       BeamChoice beams, const TermRegistry& terms = {});
+SceneBound scene_bound(const simulate::ScannerSettings& scanner, const simulate::Scene& scene,
+                       const simulate::Motion& motion, BeamChoice beams, const TermRegistry& terms = {});
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -7,7 +7,7 @@
 
 #include "pipeline/batch/shard.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// Which of a study's runs are done: all of them, those of one part of several (every n-th run), or none, as
 /// the results of all parts are merged.
@@ -21,12 +21,14 @@ struct StudyPart {
 };
 
 /// Number of a part's runs.
-inline std::size_t share_of(const Shard& part, std::size_t runs) {
+inline std::size_t share_of(const batch::Shard& part, std::size_t runs) {
   return runs < part.number ? 0 : (runs - part.number) / part.count + 1;
 }
 
 /// The number among all runs, from 0, of a part's k-th one.
-inline std::size_t run_of(const Shard& part, std::size_t k) { return part.number - 1 + k * part.count; }
+inline std::size_t run_of(const batch::Shard& part, std::size_t k) {
+  return part.number - 1 + k * part.count;
+}
 
 /// @param way  to a StudyPart
 template <class S, class Way>
@@ -40,4 +42,4 @@ void describe_part(S& d, Way way) {
       "key that parts to merge must share; `crisp monte-carlo` and `crisp basin` derive it from their options");
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

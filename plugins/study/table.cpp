@@ -9,7 +9,7 @@
 #include "pipeline/data/degree.hpp"
 #include "plugins/study/parameter_kind.hpp"
 
-namespace crisp {
+namespace crisp::study {
 namespace {
 
 /// Table 1 of the paper.
@@ -21,7 +21,7 @@ std::optional<Scatter> in_the_paper(const std::string& name) {
 
 /// [SI] Larger errors belong to another local minimum.
 double astray(const ParameterKind& kind) {
-  if (kind.si == "rad") return 5 * kDegree;
+  if (kind.si == "rad") return 5 * data::kDegree;
   return kind.si == "m" ? 0.05 : 0.02;
 }
 
@@ -215,4 +215,4 @@ std::string runs_csv(const std::vector<MonteCarloTrial>& trials) {
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -8,7 +8,7 @@
 
 #include "plugins/study/monte_carlo_trial.hpp"
 
-namespace crisp {
+namespace crisp::study {
 
 /// How estimates of one kind of parameter lie about the truth.
 struct Scatter {
@@ -55,4 +55,4 @@ std::string table_text(const Table& table);
 /// "seed,parameter,unit,bound,bound_with_steps,rqe_error,error,std_error,failure", SI.
 std::string runs_csv(const std::vector<MonteCarloTrial>& trials);
 
-}  // namespace crisp
+}  // namespace crisp::study

@@ -8,14 +8,14 @@
 #include "plugins/write/calibrations_compared.hpp"
 #include "plugins/write/urdf.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 Inspection inspect(const std::filesystem::path& file, const Rig&) {
   const Calibration calibration = read_calibration(file);
   Inspection inspection;
   inspection.text = fmt::format("  {:<36}{:>14} {:<5}{:>12}", "parameter", "value", "unit", "std error");
-  for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
+  data::for_each_parameter(calibration, [&](const std::string& name, const Parameter& p) {
     const std::string error = p.free ? fmt::format("{:12.2g}", p.std_error) : fmt::format("{:>12}", "fixed");
     inspection.text += fmt::format("\n  {:<36}{:>14.8g} {:<5}{}", name, p.value, p.unit, error);
     inspection.data["parameters"][name] = {
@@ -58,4 +58,4 @@ Inspector calibration_inspector() {
                      const Rig& rig) { return to_urdf(read_calibration(file), rig); }};
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -3,7 +3,7 @@
 
 #include <crisp/calibration_file.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 void WriteCalibrationStage::describe(StageDescription<WriteCalibrationStage>& d) {
   d.name("write.calibration").summary("writes the calibration as YAML");
@@ -24,4 +24,4 @@ void WriteCalibrationStage::finish(Outputs&, Context& context) {
   context.wrote(file_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

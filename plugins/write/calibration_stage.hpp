@@ -9,7 +9,7 @@
 #include <crisp/inspector.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 /// Writes the last calibration that it was given, when the run is over.
 class WriteCalibrationStage final : public Stage {
@@ -26,4 +26,4 @@ class WriteCalibrationStage final : public Stage {
 /// Description of a calibration file for `crisp info`.
 Inspector calibration_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::write

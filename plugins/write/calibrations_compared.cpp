@@ -12,7 +12,7 @@
 #include "pipeline/data/each_parameter.hpp"
 #include "pipeline/data/shown_unit.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 /// One parameter of two calibrations, of which one may lack it.
@@ -25,10 +25,10 @@ struct Row {
 /// In the order of the first, then what only the second has.
 std::vector<Row> rows_of(const Calibration& first, const Calibration& second) {
   std::vector<Row> rows;
-  for_each_parameter(first, [&](const std::string& name, const Parameter& p) {
+  data::for_each_parameter(first, [&](const std::string& name, const Parameter& p) {
     rows.push_back({.name = name, .first = &p});
   });
-  for_each_parameter(second, [&](const std::string& name, const Parameter& p) {
+  data::for_each_parameter(second, [&](const std::string& name, const Parameter& p) {
     const auto same = std::ranges::find(rows, name, &Row::name);
     if (same == rows.end())
       rows.push_back({.name = name, .second = &p});
@@ -42,13 +42,13 @@ std::vector<Row> rows_of(const Calibration& first, const Calibration& second) {
 std::string figure(double value, double error) {
   constexpr int kUnknown = 4;
   constexpr int kMax = 9;
-  const int digits = error > 0 ? decimals_that_show(error) : kUnknown;
+  const int digits = error > 0 ? data::decimals_that_show(error) : kUnknown;
   return fmt::format("{:.{}f}", value, std::clamp(digits, 0, kMax));
 }
 
 std::string line_of(const Row& row) {
   const Parameter& known = row.first ? *row.first : *row.second;
-  const ShownUnit unit = shown_unit(known.unit);
+  const data::ShownUnit unit = data::shown_unit(known.unit);
   // For independent recordings: for one and the same, the difference is less.
   const double error =
       unit.factor * std::hypot(row.first ? row.first->std_error : 0, row.second ? row.second->std_error : 0);
@@ -94,4 +94,4 @@ std::string compare_calibrations(const Calibration& first, const Calibration& se
   return text + caveats_of("first", first) + caveats_of("second", second);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

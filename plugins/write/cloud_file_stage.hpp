@@ -15,7 +15,7 @@
 #include "plugins/write/finite_points.hpp"
 #include "plugins/write/recording_borders.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.ply`, `write.las`: all clouds that come, as one, in a file that is written while they come.
 template <class Writer>
@@ -73,4 +73,4 @@ class CloudFileStage final : public Stage {
   std::size_t recording_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

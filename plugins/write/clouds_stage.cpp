@@ -10,7 +10,7 @@
 #include "pipeline/pcd/parts.hpp"
 #include "plugins/write/parts_options.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 /// In the header of each: which one it is.
@@ -35,7 +35,7 @@ void WriteCloudsStage::describe(StageDescription<WriteCloudsStage>& d) {
 }
 
 void WriteCloudsStage::write(const Cloud& cloud) {
-  AtomicFile file(part_path(file_, written_ + 1));
+  AtomicFile file(pcd::part_path(file_, written_ + 1));
   PcdTable table = to_pcd_table(cloud);
   table.set_note(kCloud, std::to_string(written_ + 1));
   write_pcd(file, table, format_);
@@ -52,7 +52,7 @@ void WriteCloudsStage::process(const Inputs& in, Outputs&, Context& context) {
   ++given_;
   if (failed_) return;
   if (!writer_) {
-    writer_.emplace(BatchSettings{}, [this](const Clouds& clouds) {
+    writer_.emplace(data::BatchSettings{}, [this](const Clouds& clouds) {
       for (const auto& cloud : clouds) write(*cloud);
     });
   }
@@ -79,9 +79,9 @@ void WriteCloudsStage::finish(Outputs&, Context& context) {
   writer_.reset();
   context.count("lost clouds (not written)", given_ - written_);
   for (const auto& file : kept_) context.wrote(file);
-  if (written_ > 0) report_removed(remove_numbered_beyond(file_, written_, kCloud), context);
+  if (written_ > 0) report_removed(pcd::remove_numbered_beyond(file_, written_, kCloud), context);
   context.report({{"clouds", written_}});
   context.print(fmt::format("{} clouds written, {} of them kept", written_, kept_.size()));
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

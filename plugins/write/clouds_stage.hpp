@@ -15,7 +15,7 @@
 
 #include "pipeline/data/batcher.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.clouds`: each cloud as a PCD file of its own, as soon as it comes. A thread of its own writes, so
 /// that the scans behind a cloud do not wait for the disk.
@@ -39,7 +39,7 @@ class WriteCloudsStage final : public Stage {
   // owned by the writing thread until it has finished
   std::uint64_t written_ = 0;
   std::deque<std::filesystem::path> kept_;
-  std::optional<Batcher<std::shared_ptr<const Cloud>>> writer_;
+  std::optional<data::Batcher<std::shared_ptr<const Cloud>>> writer_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -5,7 +5,7 @@
 
 #include "pipeline/files/findings_file.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 void WriteFindingsStage::describe(StageDescription<WriteFindingsStage>& d) {
   d.name("write.findings").summary("writes the findings of a diagnosis as JSON");
@@ -17,8 +17,8 @@ void WriteFindingsStage::process(const Inputs& in, Outputs&, Context&) { last_ =
 
 void WriteFindingsStage::finish(Outputs&, Context& context) {
   if (!last_) throw Error("there were no findings to write", "see what the stages above report");
-  write_file(file_, findings_json(*last_));
+  write_file(file_, files::findings_json(*last_));
   context.wrote(file_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -8,7 +8,7 @@
 #include <crisp/findings.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 /// Writes the findings of a diagnosis as JSON, for programs.
 class WriteFindingsStage final : public Stage {
@@ -22,4 +22,4 @@ class WriteFindingsStage final : public Stage {
   std::shared_ptr<const Findings> last_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

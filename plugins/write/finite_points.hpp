@@ -9,7 +9,7 @@
 #include <crisp/cloud.hpp>
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 /// Name of the count of points that for_each_finite_point() drops.
 inline constexpr const char* kNotFinite = "points with coordinates that are no numbers";
@@ -37,4 +37,4 @@ inline Error no_point_came() {
                "see the losses and warnings above for the cause; without any, no stage above gave one");
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -5,7 +5,7 @@
 #include <array>
 #include <chrono>
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 using std::chrono::sys_days;
@@ -37,4 +37,4 @@ std::optional<double> adjusted_gps_time(std::uint64_t unix_us) {
   return static_cast<double>(us) / kMicro;
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

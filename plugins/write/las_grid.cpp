@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::write {
 
 std::optional<std::array<std::int32_t, 3>> LasGrid::numbers(const std::array<double, 3>& point) const {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
@@ -39,4 +39,4 @@ std::optional<LasGrid> wider_grid(const LasGrid& grid, const Extent& extent) {
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-namespace crisp {
+namespace crisp::write {
 
 /// Extent of points along x, y and z [m].
 struct Extent {
@@ -42,4 +42,4 @@ LasGrid grid_near(const std::array<double, 3>& point);
 /// as necessary. Nothing if the extent is too large for a scale of 1 m.
 std::optional<LasGrid> wider_grid(const LasGrid& grid, const Extent& extent);
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -9,7 +9,7 @@
 
 #include "plugins/write/gps_time.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 constexpr std::uint16_t kHeaderSize = 375;
@@ -186,4 +186,4 @@ std::vector<std::string> LasWriter::warnings() const {
       file_.path().string(), 1e3 * grid_.scale)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -13,7 +13,7 @@
 #include "plugins/write/las_grid.hpp"
 #include "plugins/write/record_buffer.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// Writes a LAS file point by point: version 1.4, point format 6, with laser and beam as extra bytes.
 /// After the LAS specification 1.4 R15 of the ASPRS.
@@ -53,4 +53,4 @@ class LasWriter {
   RecordBuffer records_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -3,7 +3,7 @@
 
 #include <crisp/measurement_tables.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 void WriteMeasurementsStage::describe(StageDescription<WriteMeasurementsStage>& d) {
   d.name("write.measurements").summary("writes raw measurements, for processing in another run");
@@ -43,4 +43,4 @@ void WriteMeasurementsStage::finish(Outputs&, Context& context) {
   finish_parts(*writer_, written_, "measurements", context);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

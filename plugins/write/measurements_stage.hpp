@@ -9,7 +9,7 @@
 
 #include "plugins/write/parts_options.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.measurements`: raw measurements and the plate's trajectory, from which `grabber.pcd` goes on.
 class WriteMeasurementsStage final : public Stage {
@@ -22,10 +22,10 @@ class WriteMeasurementsStage final : public Stage {
   void write_part(bool more);
 
   PartsOptions options_;
-  std::optional<PartsWriter> writer_;
+  std::optional<pcd::PartsWriter> writer_;
   Measurements pending_;
   std::shared_ptr<const PlateTrajectory> plate_;
   std::size_t written_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

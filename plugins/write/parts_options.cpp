@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace crisp {
+namespace crisp::write {
 
 void report_removed(const std::vector<std::filesystem::path>& files, Context& context) {
   if (files.empty()) return;
@@ -12,7 +12,7 @@ void report_removed(const std::vector<std::filesystem::path>& files, Context& co
                             files.size() == 1 ? "" : " to " + files.back().filename().string()));
 }
 
-void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context) {
+void finish_parts(pcd::PartsWriter& writer, std::size_t count, std::string_view what, Context& context) {
   const auto files = writer.commit();
   auto names = nlohmann::json::array();
   for (const auto& file : files) {
@@ -28,4 +28,4 @@ void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what,
   context.report({{std::string(what), count}, {"files", names}});
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -11,7 +11,7 @@
 
 #include "pipeline/pcd/parts.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// How PCD files are written, and where a long recording is cut into several.
 struct PartsOptions {
@@ -56,6 +56,6 @@ void report_removed(const std::vector<std::filesystem::path>& files, Context& co
 /// Moves the files to their place, removes those of an earlier run under the same name, and registers the
 /// files with the run.
 /// @param what they hold, for people: "points"
-void finish_parts(PartsWriter& writer, std::size_t count, std::string_view what, Context& context);
+void finish_parts(pcd::PartsWriter& writer, std::size_t count, std::string_view what, Context& context);
 
-}  // namespace crisp
+}  // namespace crisp::write

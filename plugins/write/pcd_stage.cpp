@@ -8,7 +8,7 @@
 
 #include "plugins/write/finite_points.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 void WritePcdStage::describe(StageDescription<WritePcdStage>& d) {
   d.name("write.pcd").summary("writes the cloud as a PCD file");
@@ -55,4 +55,4 @@ void WritePcdStage::finish(Outputs&, Context& context) {
   finish_parts(*writer_, written_ + pending_.size(), "points", context);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

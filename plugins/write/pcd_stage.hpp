@@ -8,7 +8,7 @@
 #include "plugins/write/parts_options.hpp"
 #include "plugins/write/recording_borders.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.pcd`: all clouds that come, as one, in a PCD file, or in several where it is long.
 class WritePcdStage final : public Stage {
@@ -21,11 +21,11 @@ class WritePcdStage final : public Stage {
   void add(const Point& point);
 
   PartsOptions options_;
-  std::optional<PartsWriter> writer_;
+  std::optional<pcd::PartsWriter> writer_;
   Cloud pending_;
   RecordingBorders borders_;
   std::size_t recording_ = 0;  ///< of what is pending
   std::size_t written_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

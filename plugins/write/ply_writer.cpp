@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 constexpr std::size_t kPlyPoint = 4 * sizeof(float) + 2 * sizeof(std::uint16_t) + sizeof(double);
@@ -52,4 +52,4 @@ void PlyWriter::commit() {
   file_.commit();
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -11,7 +11,7 @@
 
 #include "plugins/write/record_buffer.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// Writes a binary little-endian PLY file point by point: x, y, z, intensity, laser, beam and time, all
 /// exactly as the cloud has them.
@@ -42,4 +42,4 @@ class PlyWriter {
   RecordBuffer records_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -9,7 +9,7 @@
 
 #include <crisp/atomic_file.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 static_assert(std::endian::native == std::endian::little, "PLY and LAS files are written little-endian");
 
@@ -44,4 +44,4 @@ class RecordBuffer {
   std::size_t size_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -7,7 +7,7 @@
 
 #include "pipeline/data/recordings.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// Which recording a point is of: by the pauses of the encoder readings, and where there are none by silences
 /// between a cloud and all that came before it. Points are no measure of it themselves: a filter may leave
@@ -31,8 +31,8 @@ class RecordingBorders {
   }
 
  private:
-  RecordingNumbers numbers_;
+  data::RecordingNumbers numbers_;
   std::optional<double> latest_;  // [s since epoch] of all points so far
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -12,7 +12,7 @@
 #include "plugins/write/ply_writer.hpp"
 #include "plugins/write/trajectory_stage.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 void register_write(Registrar& registrar) {
   registrar.stage<WriteCalibrationStage>();
@@ -27,4 +27,4 @@ void register_write(Registrar& registrar) {
   registrar.inspector(calibration_inspector());
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -3,8 +3,8 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 void register_write(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::write

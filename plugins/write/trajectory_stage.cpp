@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 /// "1700000000.123456789": an instant in seconds since 1970, all nanoseconds of it.
@@ -52,4 +52,4 @@ void WriteTrajectoryStage::finish(Outputs&, Context& context) {
   context.report({{"readings", readings_}});
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -9,7 +9,7 @@
 #include <crisp/plate_trajectory.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.trajectory`: how the plate turned, as a table.
 class WriteTrajectoryStage final : public Stage {
@@ -24,4 +24,4 @@ class WriteTrajectoryStage final : public Stage {
   std::size_t readings_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

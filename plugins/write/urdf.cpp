@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 /// Roll, pitch and yaw about the fixed axes x, y, z, as URDF has them [rad].
@@ -73,4 +73,4 @@ std::string to_urdf(const Calibration& calibration, const Rig& rig) {
   return urdf;
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -6,7 +6,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/rig.hpp>
 
-namespace crisp {
+namespace crisp::write {
 
 /// A calibration as a piece of URDF for ROS, with a link for the plate and each laser, and the same
 /// transforms as commands of tf2. A laser's frame has its reported angle 0 along x and grows
@@ -14,4 +14,4 @@ namespace crisp {
 /// @param rig  for the lasers' mounts
 std::string to_urdf(const Calibration& calibration, const Rig& rig);
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -18,6 +18,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::assemble;
+using namespace crisp::simulate;
+
 constexpr std::size_t kBeams = 541;  // in a scan
 
 /// Ten seconds in the office, a scan an item as clock stages give them.

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
+
 test::TestBag long_bag(bool ros2) {
   constexpr int kScans = 20'000;
   constexpr std::int64_t kPeriod = 25'000'000;

@@ -27,6 +27,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+
 constexpr const char* kRefineTheTruth = R"(crisp: 1
 vars: {calibration: ""}
 pipeline:

@@ -18,6 +18,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
+
 constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// What three lasers and the plate of the default rig send in `seconds`.

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using test::exponential_delays;
 using test::mean_device_time;
 using test::simulated_stamps;

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 constexpr std::size_t kPoints = 10'000'000;
 
 Point point_of(std::size_t i) {

@@ -23,6 +23,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::files;
+
 using Names = std::vector<std::string>;
 
 class FormTrial {

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 constexpr RqeSettings kSettings{.sigma = 0.02, .error_bound = false};
 
 Vectors cloud_of(const benchmark::State& state) {

@@ -25,6 +25,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::diagnose;
+using namespace crisp::files;
+using namespace crisp::simulate;
+
 using Scenes = std::vector<std::string>;
 
 /// An injected effect: its own parameters and the other settings it needs.

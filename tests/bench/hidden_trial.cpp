@@ -24,6 +24,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
 using test::causes;
 using test::Drawer;
 using test::Drawn;

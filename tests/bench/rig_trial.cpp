@@ -28,6 +28,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+
 /// What study.bound expects of a recording with this rig.
 struct Expected {
   std::string problem;               // with which study.bound ended

@@ -30,6 +30,10 @@
 namespace crisp::bench {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 using Work = std::function<void()>;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

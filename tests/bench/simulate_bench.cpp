@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 void simulate_scene(benchmark::State& state, const std::string& name) {
   const Scene scene = built_in_scene(name);
   std::size_t beams = 0;

@@ -11,6 +11,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using testing::HasSubstr;
 
 class AnyRig : public testing::Test {

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using test::Outcome;
 using test::PipelineFixture;
 using test::Residual;

@@ -15,6 +15,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+using namespace crisp::simulate;
+
 /// The result of a calibrating stage in the summary.
 Calibration found_by(const nlohmann::json& stage, const Calibration& truth) {
   Calibration calibration = truth;

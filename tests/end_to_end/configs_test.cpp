@@ -24,6 +24,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+using namespace crisp::files;
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using test::Outcome;
 using testing::AnyOf;
 using testing::Each;

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::files;
 using testing::ElementsAre;
 
 TEST(Configs, DiagnoseNamesTheCauseAndExtendsTheCalibration) {

@@ -10,6 +10,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using testing::HasSubstr;
 using testing::Not;
 

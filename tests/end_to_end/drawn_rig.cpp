@@ -17,6 +17,8 @@
 namespace crisp::test {
 namespace {
 
+using namespace crisp::data;
+
 constexpr double kPi = std::numbers::pi;
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using test::bytes_of;
 using test::Outcome;
 using test::put_bytes;

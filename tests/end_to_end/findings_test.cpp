@@ -13,6 +13,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+using namespace crisp::files;
+
 const Parameter& parameter_of(const Findings& findings, const std::string& cause, const std::string& name) {
   for (const Finding& finding : findings.findings) {
     if (finding.cause != cause) continue;

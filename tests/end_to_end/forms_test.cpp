@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+
 using Names = std::vector<std::string>;
 
 /// An effect, with the draws that are fixed.

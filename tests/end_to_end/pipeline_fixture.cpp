@@ -16,6 +16,7 @@
 namespace crisp::test {
 namespace {
 
+using namespace crisp::app;
 namespace fs = std::filesystem;
 
 /// Collects what is written to a stream while it lives.

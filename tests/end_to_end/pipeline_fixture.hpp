@@ -15,7 +15,7 @@ namespace crisp::test {
 
 /// What `crisp run` ended in.
 struct Outcome {  // NOLINT(bugprone-exception-escape): moving JSON checks what it holds
-  ExitStatus status = ExitStatus::failed;
+  app::ExitStatus status = app::ExitStatus::failed;
   std::string console;                 ///< its output on stderr: errors, warnings, caveats
   nlohmann::json summary;              ///< summary.json; null if there is none
   std::vector<std::string> files;      ///< in the output folder, sorted

@@ -28,7 +28,7 @@ class OnRealData : public testing::Test {
            const std::vector<std::string>& set = {}) {
     if (!at_hand(recording)) return false;
     outcome_ = fixture_.run("real/" + config, shared_data() / recording, "out", set);
-    EXPECT_EQ(outcome_.status, ExitStatus::done) << outcome_.console;
+    EXPECT_EQ(outcome_.status, app::ExitStatus::done) << outcome_.console;
     diagnosis_ = nlohmann::json::parse(bytes_of(fixture_ / "out/diagnosis.json"));
     return true;
   }

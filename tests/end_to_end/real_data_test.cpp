@@ -16,6 +16,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::data;
+using namespace crisp::files;
+
 using RealData = test::OnRealData;
 
 std::vector<std::string> unobservable_in(const nlohmann::json& diagnosis) {

@@ -8,6 +8,8 @@
 namespace crisp::test {
 namespace {
 
+using namespace crisp::simulate;
+
 using Point3 = Eigen::Vector3d;
 
 /// From the nearest point of a segment to x.

@@ -17,6 +17,7 @@ struct SceneDistance {
   double turned = 0;
   double turn = 0;  ///< [rad] this one
 };
-SceneDistance distance_to(const Scene& scene, const Cloud& cloud, std::size_t every, double most = 0.2);
+SceneDistance distance_to(const simulate::Scene& scene, const Cloud& cloud, std::size_t every,
+                          double most = 0.2);
 
 }  // namespace crisp::test

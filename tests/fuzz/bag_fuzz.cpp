@@ -17,6 +17,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
+
 void require(bool holds) {
   if (!holds) std::abort();
 }
@@ -63,7 +65,7 @@ void read_all(const std::string& bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  crisp::read_all<crisp::Rosbag1Reader>(bytes);
-  crisp::read_all<crisp::McapReader>(bytes);
+  crisp::read_all<crisp::bag::Rosbag1Reader>(bytes);
+  crisp::read_all<crisp::bag::McapReader>(bytes);
   return 0;
 }

@@ -13,6 +13,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
+
 constexpr std::size_t kParts = 256;  // of a capture
 constexpr std::size_t kLasers = 3;
 constexpr std::int64_t kSecond = 1'000'000'000;

@@ -43,7 +43,7 @@ class CaptureScript {
   explicit CaptureScript(std::span<const std::uint8_t> script);
 
   /// The pcap file.
-  Bytes file();
+  wire::Bytes file();
   /// Readable scans with echoes that each laser of the rig sent, each once.
   const std::array<std::size_t, 3>& scans() const { return scans_; }
   /// Whether an edit may take scans away before they are on the network.

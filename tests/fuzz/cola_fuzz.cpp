@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 struct Found {
   ColaLanguage language;
   Bytes payload;

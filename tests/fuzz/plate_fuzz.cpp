@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 std::vector<PlateReading> find(ByteView stream, std::size_t piece,
                                const std::optional<EncoderLine>& own = {}) {
   std::vector<PlateReading> found;

@@ -24,6 +24,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::assemble;
+using namespace crisp::capture;
+using namespace crisp::clock;
+
 void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);

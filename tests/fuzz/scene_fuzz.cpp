@@ -13,8 +13,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    const crisp::Scene scene = crisp::parse_scene(crisp::parse_yaml(text, "scene.yaml"));
-    const crisp::RayCaster caster(scene);
+    const crisp::simulate::Scene scene =
+        crisp::simulate::parse_scene(crisp::files::parse_yaml(text, "scene.yaml"));
+    const crisp::simulate::RayCaster caster(scene);
     const auto hit = caster.cast({{0, 0, 0}, {0.6, 0.64, 0.48}}, 50);
     if (hit && !(hit->distance > 0 && hit->distance <= 50)) std::abort();
     if (std::isnan(caster.distance({1, 2, 3}))) std::abort();

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::table;
+
 void require(bool holds) {
   if (!holds) std::abort();
 }
@@ -57,7 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   crisp::read(text, {.time_column = 1, .angle_column = 2, .range_column = 3});
   crisp::read(text, {.receipt_column = 1,
-                     .receipt_unit = crisp::TimeUnit::ns,
+                     .receipt_unit = crisp::table::TimeUnit::ns,
                      .counter_column = 2,
                      .counter_modulus = 256,
                      .period = 0.01,
@@ -65,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                      .angle_unit = crisp::AngleUnit::deg,
                      .range_column = 5,
                      .count_column = 4,
-                     .range_unit = crisp::LengthUnit::cm,
+                     .range_unit = crisp::table::LengthUnit::cm,
                      .invalid_from = 8183});
   crisp::read(text, {.time_column = 1,
                      .angle_column = 2,

@@ -12,9 +12,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
   crisp::Counts losses;
   try {
-    crisp::read_telegram_list(text, "list.json", losses, [&](const crisp::ListedTelegram& telegram) {
-      if (telegram.time_ns < 0 || telegram.bytes.size() > size) std::abort();
-    });
+    crisp::telegrams::read_telegram_list(text, "list.json", losses,
+                                         [&](const crisp::telegrams::ListedTelegram& telegram) {
+                                           if (telegram.time_ns < 0 || telegram.bytes.size() > size)
+                                             std::abort();
+                                         });
   } catch (const crisp::Error& error) {
     if (error.place().line < 1 || error.place().column < 1) std::abort();
   }

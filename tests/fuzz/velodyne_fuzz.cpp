@@ -6,7 +6,7 @@
 #include "grabbers/velodyne/velodyne_packet.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto packet = crisp::parse_velodyne(crisp::ByteView(data, size));
+  const auto packet = crisp::velodyne::parse_velodyne(crisp::wire::ByteView(data, size));
   if (!packet) return 0;
   for (const double azimuth : packet->azimuth) {
     if (!(azimuth >= 0 && azimuth < 6.2832)) std::abort();

@@ -17,6 +17,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::stage;
+
 /// An option of every type, so that a pipeline's text reaches each of their readers.
 class FuzzedStage final : public Stage {
  public:
@@ -84,12 +87,12 @@ void write_again(const Findings& findings) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto root = crisp::attempt([&] { return crisp::parse_yaml(text, "fuzz.yaml"); });
+  const auto root = crisp::attempt([&] { return crisp::files::parse_yaml(text, "fuzz.yaml"); });
   if (!root) return 0;
-  crisp::attempt([&] { return crisp::parse_rig(*root); });
-  const auto calibration = crisp::attempt([&] { return crisp::parse_calibration(*root); });
+  crisp::attempt([&] { return crisp::files::parse_rig(*root); });
+  const auto calibration = crisp::attempt([&] { return crisp::files::parse_calibration(*root); });
   if (calibration) crisp::write_again(*calibration);
-  const auto findings = crisp::attempt([&] { return crisp::parse_findings(*root); });
+  const auto findings = crisp::attempt([&] { return crisp::files::parse_findings(*root); });
   if (findings) crisp::write_again(*findings);
   crisp::attempt([&] { return crisp::read_pipeline(*root); });
   return 0;

@@ -21,6 +21,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::simulate;
+using namespace crisp::wire;
+
 void write_rig(const std::filesystem::path& file, const Rig& rig) {
   std::ostringstream text;
   text << "crisp: 1\nlasers:\n";

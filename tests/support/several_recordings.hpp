@@ -13,11 +13,12 @@ struct Several {
   Measurements beams;
   PlateTrajectory plate;
 
-  Sample sample() const { return {.beams = beams, .plate = &plate}; }
+  estimate::Sample sample() const { return {.beams = beams, .plate = &plate}; }
 };
 
 /// @param new_zeros  whether the encoder began to count anew each time: angles are then off by any amount
-inline Several several(const std::vector<SimulatedMeasurements>& recordings, bool new_zeros = false) {
+inline Several several(const std::vector<simulate::SimulatedMeasurements>& recordings,
+                       bool new_zeros = false) {
   constexpr double kApart = 60;  // [s]
   constexpr double kZero = 1.3;  // [rad]
   Several all;

@@ -15,13 +15,13 @@ namespace crisp::test {
 
 /// What a hub receives of a scanner in the office in some seconds, decoded.
 inline std::vector<HubItem> simulated_items(double seconds) {
-  RecordingSettings settings;
+  simulate::RecordingSettings settings;
   settings.scanner.duration = seconds;
-  RecordingSimulator simulator(settings, office());
+  simulate::RecordingSimulator simulator(settings, simulate::office());
   std::vector<HubItem> items;
   while (const auto event = simulator.next()) {
-    if (const auto* telegram = std::get_if<LaserTelegram>(&*event)) {
-      items.emplace_back(std::make_shared<const Scan>(to_scan(*telegram)));
+    if (const auto* telegram = std::get_if<simulate::LaserTelegram>(&*event)) {
+      items.emplace_back(std::make_shared<const Scan>(simulate::to_scan(*telegram)));
     } else {
       items.emplace_back(std::get<PlateReading>(*event));
     }

@@ -36,10 +36,10 @@ inline Delays bursty_delays(double mean, double burst, int length, double chance
 }
 
 /// Stamps of a clock with this skew at a rate [Hz] for a duration [s], with delays, to the microsecond.
-inline std::vector<Stamp> simulated_stamps(std::uint64_t seed, double duration, double rate, double skew,
-                                           const Delays& delays) {
+inline std::vector<clocks::Stamp> simulated_stamps(std::uint64_t seed, double duration, double rate,
+                                                   double skew, const Delays& delays) {
   Random random(seed);
-  std::vector<Stamp> stamps;
+  std::vector<clocks::Stamp> stamps;
   for (double t = 0; t < duration; t += 1 / rate) {
     const double device = std::floor(1e6 * t) * 1e-6;
     const double hub = std::floor(1e6 * (t * (1 + skew) + delays(random))) * 1e-6;
@@ -48,7 +48,7 @@ inline std::vector<Stamp> simulated_stamps(std::uint64_t seed, double duration, 
   return stamps;
 }
 
-inline double mean_device_time(const std::vector<Stamp>& stamps) {
+inline double mean_device_time(const std::vector<clocks::Stamp>& stamps) {
   double sum = 0;
   for (const auto& stamp : stamps) sum += stamp.device;
   return sum / static_cast<double>(stamps.size());

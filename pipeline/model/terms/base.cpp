@@ -5,7 +5,7 @@
 #include "pipeline/model/rotation.hpp"
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// A mast that sways in the wind, a tripod that sinks: the whole scanner moves in time, whatever the plate
@@ -131,4 +131,4 @@ void register_base_terms(TermRegistry& terms) {
   terms.add(std::make_shared<BaseTilt>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -8,7 +8,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 using On = EmpiricalTerm::On;
@@ -206,7 +206,8 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
   add(On::kRange, Over::kPlateRate, Shape::powers());
   add(On::kPlateAngle, Over::kTime, in_time);
-  add(On::kRange, Over::kMirrorAngle, Shape::hats(evenly(-180 * kDegree, 180 * kDegree, 49)).finely());
+  add(On::kRange, Over::kMirrorAngle,
+      Shape::hats(evenly(-180 * data::kDegree, 180 * data::kDegree, 49)).finely());
   add(On::kRange, Over::kRange, Shape::hats(finer_ranges()).finely());
   add(On::kRange, Over::kIncidence, Shape::splines(16, 0, kGrazing, 0).finely(), "range.incidence");
   add(On::kRange, Over::kRemission, Shape::splines(16, dark, bright, usual).finely(), "range.intensity");
@@ -214,4 +215,4 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kPlateRate, Shape::hats(evenly(-12.5, 12.5, 26)).finely());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -12,7 +12,7 @@
 #include "pipeline/model/rotation.hpp"
 #include "pipeline/model/terms/shape.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// Describes a departure by its shape: what is off, over what. It is the general member of a cause's family
 /// where only that cause has its invariances, and else a departure that no cause of the catalogue explains.
@@ -113,4 +113,4 @@ class EmpiricalTerm final : public ModelTerm {
   TermInfo info_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::model

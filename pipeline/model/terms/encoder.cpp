@@ -4,7 +4,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// The encoder's disk turns about a point off its centre.
@@ -118,4 +118,4 @@ void register_encoder_terms(TermRegistry& terms) {
   terms.add(std::make_shared<EncoderSpeedLag>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

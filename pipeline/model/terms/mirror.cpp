@@ -4,7 +4,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// A mirror that is not at 45° to its axis sends the beam out of the plane that it should sweep.
@@ -62,4 +62,4 @@ void register_mirror_terms(TermRegistry& terms) {
   terms.add(std::make_shared<MirrorEccentricity>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

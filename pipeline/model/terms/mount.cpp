@@ -5,7 +5,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// The beam starts y further along the tangent.
@@ -109,4 +109,4 @@ void register_mount_terms(TermRegistry& terms) {
   terms.add(std::make_shared<ScanPlaneTilt>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -7,7 +7,7 @@
 #include "pipeline/model/rotation.hpp"
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// The harmonic u cos φ + v sin φ.
@@ -78,4 +78,4 @@ void register_plate_terms(TermRegistry& terms) {
   terms.add(std::make_shared<Rocking>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -6,7 +6,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 struct RangeOffset final : DifferentiableTerm<RangeOffset> {
@@ -151,4 +151,4 @@ void register_range_terms(TermRegistry& terms) {
   terms.add(std::make_shared<RangeCyclic>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

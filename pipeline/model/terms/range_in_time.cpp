@@ -4,7 +4,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 struct RangeWarmup final : DifferentiableTerm<RangeWarmup> {
@@ -77,4 +77,4 @@ void register_range_in_time_terms(TermRegistry& terms) {
   terms.add(std::make_shared<RangeStep>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -3,7 +3,7 @@
 
 #include <crisp/term.hpp>
 
-namespace crisp {
+namespace crisp::model {
 
 // The built-in terms, by what of the scanner they are of.
 void register_mount_terms(TermRegistry& terms);
@@ -18,4 +18,4 @@ void register_range_in_time_terms(TermRegistry& terms);
 // Departures described by their shape, where no cause is identified.
 void register_empirical_terms(TermRegistry& terms);
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace crisp {
+namespace crisp::model {
 
 Shape Shape::fourier(int orders) {
   Shape shape(Kind::kFourier);
@@ -88,4 +88,4 @@ std::string Shape::summary(std::size_t coefficient) const {
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

@@ -12,7 +12,7 @@
 
 #include "pipeline/model/chain.hpp"
 
-namespace crisp {
+namespace crisp::model {
 
 /// What the coefficients of a shape count for at one place: the index of each, and its weight. Those that are
 /// left out count nothing.
@@ -136,4 +136,4 @@ class Shape {
   bool is_fine_ = false;
 };
 
-}  // namespace crisp
+}  // namespace crisp::model

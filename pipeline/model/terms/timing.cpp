@@ -5,7 +5,7 @@
 
 #include "pipeline/model/terms/register_terms.hpp"
 
-namespace crisp {
+namespace crisp::model {
 namespace {
 
 /// The time between beams is not what was taken for it, or was left out altogether.
@@ -95,4 +95,4 @@ void register_timing_terms(TermRegistry& terms) {
   terms.add(std::make_shared<ClockDrift>());
 }
 
-}  // namespace crisp
+}  // namespace crisp::model

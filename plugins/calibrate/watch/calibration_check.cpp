@@ -10,8 +10,10 @@
 
 #include "pipeline/data/degree.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
+
+using estimate::Sample;
 
 constexpr std::uint64_t kSampleSeed = 1;  // the same beams each time
 
@@ -35,13 +37,14 @@ Sample covered_by_both(const Sample& sample, const Calibration& a, const Calibra
       greatest = std::max(greatest, laser.eta.value);
     }
   }
-  return covered(sample, least, greatest);
+  return estimate::covered(sample, least, greatest);
 }
 
 std::string format_change(const std::string& name, double by) {
   if (name.ends_with(".tau")) return fmt::format("{:.2g} mm", 1e3 * by);
   if (name.ends_with(".eta")) return fmt::format("{:.2g} ms", 1e3 * by);
-  if (name.ends_with(".lambda") || name.ends_with(".alpha")) return fmt::format("{:.2g} deg", by / kDegree);
+  if (name.ends_with(".lambda") || name.ends_with(".alpha"))
+    return fmt::format("{:.2g} deg", by / data::kDegree);
   return fmt::format("{:.3g}", by);
 }
 
@@ -51,7 +54,7 @@ struct ParameterChange {
 };
 
 /// The free parameter that a refinement moved most, in its standard errors.
-ParameterChange largest_change(const SensorModel& start, const Outcome& outcome) {
+ParameterChange largest_change(const SensorModel& start, const estimate::Outcome& outcome) {
   ParameterChange most;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(outcome.free[k]);
@@ -85,13 +88,13 @@ class Checker {
         settings_(settings),
         keep_running_(keep_running),
         start_(calibration, terms),
-        thinned_(thin_evenly(sample, settings.beams, kSampleSeed)) {}
+        thinned_(estimate::thin_evenly(sample, settings.beams, kSampleSeed)) {}
 
   CalibrationCheck check(RecalibrationPolicy policy) {
-    const Refinement best = refine(settings_.refinement);
-    const Sample few =
-        thin_by_area(covered_by_both(sample_, calibration_, calibration_of(best.outcome, rig_)), start_,
-                     settings_.beams, kSampleSeed);
+    const estimate::Refinement best = refine(settings_.refinement);
+    const Sample few = estimate::thin_by_area(
+        covered_by_both(sample_, calibration_, estimate::calibration_of(best.outcome, rig_)), start_,
+        settings_.beams, kSampleSeed);
     CalibrationCheck check{.rqe = rqe_of(start_, few, settings_.sigma),
                            .best_rqe = rqe_of(best.outcome.model, few, settings_.sigma)};
     const ParameterChange most = largest_change(start_, best.outcome);
@@ -106,13 +109,13 @@ class Checker {
   }
 
  private:
-  Refinement refine(const RefinementSettings& settings) const {
-    return refine_by_surfels(start_, thinned_, settings, [this](int) { return keep_running_(); });
+  estimate::Refinement refine(const estimate::RefinementSettings& settings) const {
+    return estimate::refine_by_surfels(start_, thinned_, settings, [this](int) { return keep_running_(); });
   }
 
   /// With the geometry as it is, known as well as the calibration states.
   Recalibration lags(const Sample& few) const {
-    RefinementSettings settings = settings_.refinement;
+    estimate::RefinementSettings settings = settings_.refinement;
     for (const char* geometry : {"lambda", "tau", "alpha"}) settings.fixed.emplace_back(geometry);
     for (const LaserCalibration& laser : calibration_.lasers) {
       for (const auto& [name, known] : {std::pair("lambda", &laser.lambda), std::pair("tau", &laser.tau),
@@ -121,14 +124,14 @@ class Checker {
                                                            .std_error = known->std_error};
       }
     }
-    const Outcome outcome = refine(settings).outcome;
+    const estimate::Outcome outcome = refine(settings).outcome;
     Recalibration recalibration = whole(outcome, rqe_of(outcome.model, few, settings_.sigma));
     recalibration.calibration = with_lags_of(calibration_, recalibration.calibration);
     return recalibration;
   }
 
-  Recalibration whole(const Outcome& outcome, double rqe) const {
-    return {.calibration = calibration_of(outcome, rig_), .rqe = rqe, .caveats = outcome.caveats};
+  Recalibration whole(const estimate::Outcome& outcome, double rqe) const {
+    return {.calibration = estimate::calibration_of(outcome, rig_), .rqe = rqe, .caveats = outcome.caveats};
   }
 
   const Calibration& calibration_;
@@ -148,4 +151,4 @@ CalibrationCheck check_calibration(const Calibration& calibration, const Sample&
   return Checker(calibration, sample, rig, terms, settings, keep_running).check(policy);
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -10,7 +10,7 @@
 
 #include "pipeline/estimate/surfel_refinement.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// Parameters that a recalibration estimates.
 enum class RecalibratedParameters : std::uint8_t {
@@ -27,7 +27,7 @@ struct CheckSettings {
   double significance = 5;      ///< [standard errors] by which a parameter must have moved as well
   std::size_t beams = 100'000;  ///< number of beams in a check
   RecalibratedParameters parameters = RecalibratedParameters::Lags;
-  RefinementSettings refinement;
+  estimate::RefinementSettings refinement;
 };
 
 /// A calibration that was found anew.
@@ -54,8 +54,8 @@ struct CalibrationCheck {
 ///
 /// @param keep_running  polled between the rounds of the work
 /// @throws Error  if the beams show no flat surface
-CalibrationCheck check_calibration(const Calibration& calibration, const Sample& sample, const Rig& rig,
-                                   const TermRegistry& terms, const CheckSettings& settings,
+CalibrationCheck check_calibration(const Calibration& calibration, const estimate::Sample& sample,
+                                   const Rig& rig, const TermRegistry& terms, const CheckSettings& settings,
                                    RecalibrationPolicy policy, const std::function<bool()>& keep_running);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -3,8 +3,8 @@
 
 #include "plugins/calibrate/watch/watch_stage.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 void register_watch(Registrar& registrar) { registrar.stage<WatchStage>(); }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

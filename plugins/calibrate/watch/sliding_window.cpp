@@ -5,13 +5,13 @@
 #include <cmath>
 #include <utility>
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 /// The same share of each batch, but not the same beams: what is not taken is never copied.
 void append_share(const Measurements& beams, double share, std::uint64_t lots, Measurements& to) {
   const auto count = static_cast<std::size_t>(std::lround(share * static_cast<double>(beams.size())));
-  to.append(count < beams.size() ? thin_evenly({.beams = beams}, count, lots).beams : beams);
+  to.append(count < beams.size() ? estimate::thin_evenly({.beams = beams}, count, lots).beams : beams);
 }
 
 }  // namespace
@@ -29,20 +29,21 @@ double SlidingWindow::duration() const {
   return batches_.empty() ? 0 : latest() - batches_.front().beams->time.front();
 }
 
-Sample sample_of(const std::vector<SlidingWindow::Batch>& batches, std::size_t most, PlateTrajectory& plate) {
+estimate::Sample sample_of(const std::vector<SlidingWindow::Batch>& batches, std::size_t most,
+                           PlateTrajectory& plate) {
   std::size_t beams_in_all = 0;
   for (const auto& batch : batches) beams_in_all += batch.beams->size();
   const double share = static_cast<double>(most) / static_cast<double>(beams_in_all);
   std::uint64_t lots = 0;
   std::vector<std::shared_ptr<const PlateTrajectory>> pieces;
-  Sample sample{.plate = &plate};
+  estimate::Sample sample{.plate = &plate};
   for (const auto& [beams, piece] : batches) {
     if (pieces.empty() || pieces.back() != piece) pieces.push_back(piece);
     sample.beams.epoch_ns = beams->epoch_ns;
     append_share(*beams, share, ++lots, sample.beams);
   }
-  plate = joined(pieces);
+  plate = estimate::joined(pieces);
   return sample;
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

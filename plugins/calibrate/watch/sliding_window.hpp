@@ -8,7 +8,7 @@
 
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// The measurements of the last seconds with the plate's motion beneath them: batches and pieces that
 /// overlap, as they come from a live pipeline.
@@ -40,6 +40,7 @@ class SlidingWindow {
 /// so that the same reading has times in them which differ by microseconds, and two of it would be a jerk.
 ///
 /// @param plate  receives the trajectory, which the sample refers to
-Sample sample_of(const std::vector<SlidingWindow::Batch>& batches, std::size_t most, PlateTrajectory& plate);
+estimate::Sample sample_of(const std::vector<SlidingWindow::Batch>& batches, std::size_t most,
+                           PlateTrajectory& plate);
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

@@ -14,7 +14,7 @@
 
 #include "pipeline/estimate/free_parameters.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 namespace {
 
 constexpr std::size_t kToChooseFrom =
@@ -61,7 +61,7 @@ void WatchStage::describe(StageDescription<WatchStage>& d) {
       .range(0, 1000);
   d.option("beams", &WatchStage::settings_, &CheckSettings::beams, "number of beams in a check")
       .range(1000, 1e7);
-  d.option("fixed", &WatchStage::settings_, &CheckSettings::refinement, &RefinementSettings::fixed,
+  d.option("fixed", &WatchStage::settings_, &CheckSettings::refinement, &estimate::RefinementSettings::fixed,
            "parameters that are held: laser1.eta, or eta for that of all lasers");
   d.option(
        "noise", [](WatchStage & stage) -> auto& { return stage.settings_.refinement.surfels.noise; },
@@ -75,7 +75,7 @@ WatchStage::~WatchStage() {
 }
 
 void WatchStage::check(const RunSettings& run) const {
-  check_fixed(settings_.refinement.fixed, nominal_calibration(run.rig));
+  estimate::check_fixed(settings_.refinement.fixed, nominal_calibration(run.rig));
 }
 
 void WatchStage::process(const Inputs& in, Outputs& out, Context& context) {
@@ -122,7 +122,8 @@ void WatchStage::begin_check(Context& context) {
                 terms = context.run().registrar->get<TermRegistry>(), policy = policy()]() mutable {
     PlateTrajectory plate;
     // Beams outside of a check can be replaced while it runs.
-    const Sample sample = sample_of(std::exchange(batches, {}), kToChooseFrom * settings_.beams, plate);
+    const estimate::Sample sample =
+        sample_of(std::exchange(batches, {}), kToChooseFrom * settings_.beams, plate);
     return check_calibration(*calibration, sample, rig, terms, settings_, policy, [this] { return !stop_; });
   };
   running_ =
@@ -202,4 +203,4 @@ void WatchStage::finish(Outputs& out, Context& context) {
   if (!good_) context.mark_untrusted("the calibration is stale: recalibrate");
 }
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

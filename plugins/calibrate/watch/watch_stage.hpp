@@ -16,7 +16,7 @@
 #include "plugins/calibrate/watch/calibration_check.hpp"
 #include "plugins/calibrate/watch/sliding_window.hpp"
 
-namespace crisp {
+namespace crisp::calibrate {
 
 /// When the calibration is found anew.
 enum class Recalibrate : std::uint8_t { Never, AtStart, WhenStale, Always };
@@ -47,7 +47,7 @@ class WatchStage final : public Stage {
   Recalibrate recalibrate_ = Recalibrate::Never;
   std::filesystem::path request_;
 
-  OrientedPlate oriented_;
+  data::OrientedPlate oriented_;
   std::optional<SlidingWindow> recent_;
   std::shared_ptr<const Calibration> calibration_;  ///< that is in use
   std::shared_ptr<const Calibration> given_;        ///< from above
@@ -63,4 +63,4 @@ class WatchStage final : public Stage {
   double rqe_ = 0, best_rqe_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::calibrate

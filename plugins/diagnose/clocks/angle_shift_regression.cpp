@@ -11,7 +11,7 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 double signed_square(double rate) { return rate * std::abs(rate); }
@@ -128,12 +128,12 @@ Eigen::MatrixXd AngleShiftModel::clustered_scores(const Eigen::MatrixXd& rows) c
 }
 
 double AngleShiftModel::scale() const {
-  constexpr double kMin = 0.01 * kDegree;
+  constexpr double kMin = 0.01 * data::kDegree;
   std::vector<double> sizes(static_cast<std::size_t>(residuals_.size()));
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     sizes[i] = std::abs(residuals_[static_cast<Eigen::Index>(i)]);
   }
-  return std::max(kMin, kMadToSigma * median_in_place(sizes));
+  return std::max(kMin, statistics::kMadToSigma * statistics::median_in_place(sizes));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

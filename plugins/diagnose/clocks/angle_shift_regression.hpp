@@ -9,7 +9,7 @@
 
 #include "plugins/diagnose/clocks/angle_shifts.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Robust linear model of n angle shifts, fitted by iteratively reweighted least squares (Huber's weights).
 /// Its nuisance terms are a lag per laser times the change of rate, the square of the rate, and its sign
@@ -67,4 +67,4 @@ inline bool is_across(const AngleShift& shift, double time) {
   return shift.earlier < time && time <= shift.later;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

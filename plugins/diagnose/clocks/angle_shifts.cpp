@@ -15,13 +15,13 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
-constexpr std::size_t kBeams = 64;             // beams compared per scan
-constexpr double kReach = 20 * kDegree;        // largest shift tested
-constexpr double kShiftStep = 0.25 * kDegree;  // grid of shifts
+constexpr std::size_t kBeams = 64;                   // beams compared per scan
+constexpr double kReach = 20 * data::kDegree;        // largest shift tested
+constexpr double kShiftStep = 0.25 * data::kDegree;  // grid of shifts
 constexpr std::size_t kShifts = 161;
 constexpr std::size_t kScans = 5;    // per block
 constexpr double kGap = 2.5;         // [scan periods] largest gap between neighbouring scans
@@ -58,7 +58,7 @@ struct Cost {
 class ScanLines {
  public:
   ScanLines(const Measurements& beams, const PlateTrajectory& plate, std::size_t laser) {
-    const RecordingNumbers recordings(plate);
+    const data::RecordingNumbers recordings(plate);
     std::size_t most = 0;
     for (std::size_t i = 0; i < beams.size(); ++i) {
       if (beams.laser[i] == laser) most = std::max<std::size_t>(most, beams.beam[i]);
@@ -86,7 +86,7 @@ class ScanLines {
     if (lines_.size() < 2) return;
     std::vector<double> periods;
     for (std::size_t j = 1; j < lines_.size(); ++j) periods.push_back(lines_[j].time - lines_[j - 1].time);
-    period_ = median_in_place(periods);
+    period_ = statistics::median_in_place(periods);
     index_by_angle();
   }
 
@@ -206,7 +206,7 @@ std::optional<double> minimizer(const Cost& cost) {
   }
   if (known.size() < kShifts / 4) return std::nullopt;
   const auto least = static_cast<std::size_t>(std::ranges::min_element(means) - means.begin());
-  if (least < 4 || least + 4 >= kShifts || !(means[least] < kDeep * median_in_place(known)))
+  if (least < 4 || least + 4 >= kShifts || !(means[least] < kDeep * statistics::median_in_place(known)))
     return std::nullopt;
   const double before = means[least - 1] - means[least];
   const double after = means[least + 1] - means[least];
@@ -253,10 +253,10 @@ std::vector<AngleShift> angle_shifts(const Measurements& beams, const PlateTraje
   if (beams.size() == 0 || plate.empty()) return {};
   const std::size_t lasers = *std::ranges::max_element(beams.laser) + std::size_t{1};
   std::vector<std::vector<AngleShift>> found(lasers);
-  for_each_index(lasers, [&](std::size_t laser) { found[laser] = shifts_of(beams, plate, laser); });
+  quality::for_each_index(lasers, [&](std::size_t laser) { found[laser] = shifts_of(beams, plate, laser); });
   std::vector<AngleShift> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Difference of the encoder angle between two times at which a laser measured the same ranges.
 struct AngleShift {
@@ -28,4 +28,4 @@ struct AngleShift {
 ///          repeats another
 std::vector<AngleShift> angle_shifts(const Measurements& beams, const PlateTrajectory& plate);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,7 +11,7 @@
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr Eigen::Index kHighest = 12;  // order: four periods of a wave
@@ -34,22 +34,22 @@ Eigen::MatrixXd bends(const Eigen::VectorXd& time) {
 double scatter_of(const Eigen::VectorXd& lead) {
   std::vector<double> steps;
   for (Eigen::Index k = 1; k < lead.size(); ++k) steps.push_back(std::abs(lead[k] - lead[k - 1]));
-  return kMadToSigma * median_in_place(steps) / std::sqrt(2);
+  return statistics::kMadToSigma * statistics::median_in_place(steps) / std::sqrt(2);
 }
 
 }  // namespace
 
-std::optional<ClockCurve> smooth_curve(const Envelope& envelope, std::uint64_t seed) {
+std::optional<ClockCurve> smooth_curve(const clocks::Envelope& envelope, std::uint64_t seed) {
   constexpr double kSmooth = 1.5;  // times the scatter
   const Eigen::Index n = envelope.lead.size();
   const Eigen::MatrixXd base = envelope.straight();
-  const Eigen::MatrixXd columns = off_base(base, bends(envelope.time));
-  const Eigen::VectorXd left = off_base(base, envelope.lead);
+  const Eigen::MatrixXd columns = clocks::off_base(base, bends(envelope.time));
+  const Eigen::VectorXd left = clocks::off_base(base, envelope.lead);
   ClockCurve best;
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index bent = 1; bent <= columns.cols() && bent + base.cols() < n; ++bent) {
     const Eigen::MatrixXd some = columns.leftCols(bent);
-    const Eigen::VectorXd delay = some * least_squares(some, left);
+    const Eigen::VectorXd delay = some * statistics::least_squares(some, left);
     const double squares = (left - delay).squaredNorm();
     const double bic = bic_of_series(squares, n, static_cast<double>(base.cols() + bent));
     if (!(bic < least)) continue;
@@ -66,4 +66,4 @@ std::optional<ClockCurve> smooth_curve(const Envelope& envelope, std::uint64_t s
   return best;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 
 #include "pipeline/clocks/envelope.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// A clock whose rate changes smoothly: the general member of the family of clock.drift, a polynomial of the
 /// minimum delays over time.
@@ -24,6 +24,6 @@ struct ClockCurve {
 
 /// The polynomial of second to twelfth order with the least BIC. Nothing where it leaves more than
 /// neighbouring minimum delays differ by: then their course is not smooth.
-std::optional<ClockCurve> smooth_curve(const Envelope& envelope, std::uint64_t seed);
+std::optional<ClockCurve> smooth_curve(const clocks::Envelope& envelope, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,8 +11,10 @@
 #include "plugins/diagnose/clocks/device_jumps.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using clocks::Envelope;
 
 constexpr std::size_t kMin = 64;  // minimum number of stamps for a test
 
@@ -55,16 +57,18 @@ void report_step(std::span<const CountedStamp> stamps, const Envelope& envelope,
     departure.size = -step;
   } else {
     departure.kind = ClockDeparture::Kind::latency_step;
-    const std::vector<Stamp> all = without_counts(stamps);
-    at = std::clamp<std::size_t>(first_after(all, step, level), 1, stamps.size() - 1);
-    waits = 1 / early_share(step > 0 ? std::span(all).first(at) : std::span(all).subspan(at), step, level);
+    const std::vector<clocks::Stamp> all = without_counts(stamps);
+    at = std::clamp<std::size_t>(clocks::first_after(all, step, level), 1, stamps.size() - 1);
+    waits = 1 / clocks::early_share(step > 0 ? std::span(all).first(at) : std::span(all).subspan(at), step,
+                                    level);
   }
   // A stall would delay the step's time by the waiting time of its queue.
-  const auto without_delay = [&](const Stamp& s, double beyond) {
-    return receipt_of(s) - std::max(0.0, s.lead - level(receipt_of(s)) - beyond);
+  const auto without_delay = [&](const clocks::Stamp& s, double beyond) {
+    return clocks::receipt_of(s) - std::max(0.0, s.lead - level(clocks::receipt_of(s)) - beyond);
   };
   const double sent = without_delay(stamps[at].stamp, step);
-  departure.at = std::max(sent, receipt_of(stamps.front().stamp));  // a step lies within the recording
+  departure.at =
+      std::max(sent, clocks::receipt_of(stamps.front().stamp));  // a step lies within the recording
   departure.at_std_error =
       waits * std::max(1e-6, sent - without_delay(stamps[at - 1].stamp, 0)) + (departure.at - sent);
 }
@@ -82,9 +86,9 @@ SeriesModels models_of(const Envelope& envelope, const Eigen::MatrixXd& columns,
                        const std::optional<ClockCurve>& curve) {
   const Eigen::MatrixXd base = envelope.straight();
   const Eigen::MatrixXd steps = columns.rightCols(columns.cols() - 1);
-  const SeriesFit bend = best_in_series(base, columns.leftCols(1), envelope.lead);
-  const SeriesFit step = best_in_series(base, steps, envelope.lead);
-  const double whole = off_base(base, envelope.lead).squaredNorm();
+  const clocks::SeriesFit bend = clocks::best_in_series(base, columns.leftCols(1), envelope.lead);
+  const clocks::SeriesFit step = clocks::best_in_series(base, steps, envelope.lead);
+  const double whole = clocks::off_base(base, envelope.lead).squaredNorm();
   const double least = static_cast<double>(envelope.lead.size()) * kStampQuantum * kStampQuantum;
   const auto bic = [&](double squares, double of_its_own) {
     return bic_of_series(std::max(least, squares), envelope.lead.size(),
@@ -94,7 +98,7 @@ SeriesModels models_of(const Envelope& envelope, const Eigen::MatrixXd& columns,
   SeriesModels models{.constant = bic(whole, 0),
                       .drift = bic(whole - bend.product * bend.product, 1),
                       .step = bic(whole - step.product * step.product, 2),
-                      .window = static_cast<std::size_t>(before_step(steps.col(step.column))),
+                      .window = static_cast<std::size_t>(clocks::before_step(steps.col(step.column))),
                       .size = step.values[step.values.size() - 1]};
   if (curve)
     models.drift = std::min(models.drift, bic(curve->squares, static_cast<double>(curve->parameters)));
@@ -135,8 +139,8 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
                                               std::uint64_t seed) {
   if (stamps.size() < kMin) return std::nullopt;
   constexpr Eigen::Index kMargin = 2;  // windows at either end
-  const Envelope envelope = envelope_of(without_counts(stamps));
-  const Eigen::MatrixXd columns = bend_and_steps(envelope.time, kMargin);
+  const Envelope envelope = clocks::envelope_of(without_counts(stamps));
+  const Eigen::MatrixXd columns = clocks::bend_and_steps(envelope.time, kMargin);
   const PermutationTest test = test_series(envelope.straight(), columns, envelope.lead, seed);
   ClockDeparture departure{.size = test.values[2],
                            .std_error = test.errors[2],
@@ -172,7 +176,7 @@ std::optional<ClockDeparture> clock_departure(std::span<const CountedStamp> stam
     departure.competitors = competitors_of(stamps, envelope, models, departure.kind);
     return departure;
   }
-  const Eigen::Index before = before_step(columns.col(test.column));
+  const Eigen::Index before = clocks::before_step(columns.col(test.column));
   const auto window = static_cast<std::size_t>(before);
   report_step(stamps, envelope, window, test.values, departure);
   if (departure.kind == ClockDeparture::Kind::latency_step && is_backlog(envelope, before, test.values)) {
@@ -190,7 +194,7 @@ std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps,
   std::vector<CountedStamp> corrected(stamps.begin(), stamps.end());
   if (!departure.is_step()) return corrected;
   for (CountedStamp& s : corrected) {
-    if (receipt_of(s.stamp) < departure.at) continue;
+    if (clocks::receipt_of(s.stamp) < departure.at) continue;
     if (departure.kind == ClockDeparture::Kind::latency_step) {
       s.stamp.lead -= departure.size;
     } else {  // a step of the link does not change the receipt time
@@ -207,4 +211,4 @@ std::optional<std::array<double, 2>> clock_step_interval(const std::optional<Clo
   return std::array{departure->at - margin, departure->at + margin};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -12,7 +12,7 @@
 
 #include "plugins/diagnose/clocks/clock_stamps.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Deviation of a clock or its link from the clock model: a constant rate and a constant minimum delay.
 struct ClockDeparture {
@@ -62,4 +62,4 @@ std::vector<CountedStamp> without_step(std::span<const CountedStamp> stamps, con
 /// Interval that contains the step of the device's clock; empty without a step.
 std::optional<std::array<double, 2>> clock_step_interval(const std::optional<ClockDeparture>& departure);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

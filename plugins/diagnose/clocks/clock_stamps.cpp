@@ -9,7 +9,9 @@
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
+
+using clocks::Stamp;
 
 std::vector<Stamp> without_counts(std::span<const CountedStamp> stamps) {
   std::vector<Stamp> without_counts;
@@ -18,16 +20,16 @@ std::vector<Stamp> without_counts(std::span<const CountedStamp> stamps) {
   return without_counts;
 }
 
-ClockLine line_of(std::vector<Stamp> stamps) {
+clocks::ClockLine line_of(std::vector<Stamp> stamps) {
   std::ranges::stable_sort(stamps, {}, &Stamp::device);
   double sum = 0;
   for (const Stamp& s : stamps) sum += s.device;
-  return line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
+  return clocks::line_by_convex_hull(stamps, sum / static_cast<double>(stamps.size()));
 }
 
 void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_t receipt_ns) {
   constexpr std::int64_t kRestart = 1000;  // counts: repeated telegrams are not that late
-  const DeviceStamp stamp{.receipt_ns = receipt_ns, .device_us = device_us};
+  const clocks::DeviceStamp stamp{.receipt_ns = receipt_ns, .device_us = device_us};
   std::int64_t count = 0;
   if (stamps_.empty()) {
     first_ns_ = receipt_ns;
@@ -35,7 +37,7 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
     const std::int64_t steps = counter_.advance(counter, 1);
     if (steps <= 0 && steps > -kRestart) return;  // a repeated telegram
     count = stamps_.back().count + (steps > 0 ? steps : 1);
-    device_us_ += elapsed(last_, stamp).device_us;
+    device_us_ += clocks::elapsed(last_, stamp).device_us;
   }
   counter_.accept(counter);
   last_ = stamp;
@@ -44,8 +46,8 @@ void StampTrack::add(std::uint16_t counter, std::uint32_t device_us, std::int64_
   stamps_.push_back({.count = count, .stamp = {.device = device, .lead = hub - device}});
 }
 
-void StampTrack::take_out(const HubDeviation& deviation, double hub_s) {
-  const auto hub = [&](const CountedStamp& s) { return hub_s + receipt_of(s.stamp); };
+void StampTrack::take_out(const clocks::HubDeviation& deviation, double hub_s) {
+  const auto hub = [&](const CountedStamp& s) { return hub_s + clocks::receipt_of(s.stamp); };
   std::erase_if(stamps_, [&](const CountedStamp& s) { return deviation.is_unsure(hub(s)); });
   for (CountedStamp& s : stamps_) s.stamp.lead -= deviation.at(hub(s));
 }
@@ -53,13 +55,13 @@ void StampTrack::take_out(const HubDeviation& deviation, double hub_s) {
 ClockFacts clock_facts(std::span<const CountedStamp> stamps) {
   if (stamps.size() < kMinOfClock) return {};
   const std::vector<Stamp> all = without_counts(stamps);
-  const ClockLine line = line_of(all);
+  const clocks::ClockLine line = line_of(all);
   std::vector<double> delays;
   for (const Stamp& s : all) delays.push_back(s.lead - line.lead(s.device));
   std::ranges::sort(delays);
   constexpr double kMax = 0.95;
   return {.skew = line.slope,
-          .skew_std_error = errors_of_line(all, line).slope,
+          .skew_std_error = clocks::errors_of_line(all, line).slope,
           .delay_median = delays[delays.size() / 2],
           .delay_95 = delays[static_cast<std::size_t>(kMax * static_cast<double>(delays.size() - 1))]};
 }
@@ -74,12 +76,13 @@ std::vector<std::span<const CountedStamp>> unbroken_segments(
   std::vector<double> periods;
   for (std::size_t i = 1; i < passes.size(); ++i) periods.push_back(turn(i));
   if (periods.empty()) return {passes};
-  const double usual = median_in_place(periods);
+  const double usual = statistics::median_in_place(periods);
   std::vector<std::span<const CountedStamp>> runs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < passes.size(); ++i) {
-    const bool is_uncertain = step_interval && receipt_of(passes[i - 1].stamp) <= (*step_interval)[1] &&
-                              receipt_of(passes[i].stamp) >= (*step_interval)[0];
+    const bool is_uncertain = step_interval &&
+                              clocks::receipt_of(passes[i - 1].stamp) <= (*step_interval)[1] &&
+                              clocks::receipt_of(passes[i].stamp) >= (*step_interval)[0];
     if (!is_uncertain && std::abs(turn(i) - usual) <= kLeap * usual) continue;
     runs.push_back(passes.subspan(begin, i - begin));
     begin = i;
@@ -101,7 +104,7 @@ std::optional<MirrorFacts> mirror_facts(std::span<const CountedStamp> passes,
       const double lasted = to.stamp.device - from.stamp.device;
       const auto turned = static_cast<double>(to.count - from.count);
       facts.periods.push_back(lasted / turned);
-      facts.begin.push_back(receipt_of(from.stamp));
+      facts.begin.push_back(clocks::receipt_of(from.stamp));
       time += lasted;
       turns += turned;
     }
@@ -134,4 +137,4 @@ Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t s
   return gain;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

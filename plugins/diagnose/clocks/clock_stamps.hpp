@@ -13,14 +13,14 @@
 #include "pipeline/clocks/hub_deviation.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 inline constexpr double kStampQuantum = 1e-6;  ///< [s] resolution of device times
 
 /// Device time, receipt time and counter of one telegram.
 struct CountedStamp {
   std::int64_t count = 0;  ///< device's counter, unwrapped
-  Stamp stamp;             ///< device time since the first stamp, and the receipt's lead over it
+  clocks::Stamp stamp;     ///< device time since the first stamp, and the receipt's lead over it
 };
 
 /// Stamps of one device in order of receipt, with counter and clock unwrapped. A jump of the clock appears as
@@ -35,14 +35,14 @@ class StampTrack {
   /// it.
   ///
   /// @param hub_s  [s] hub time of the first stamp, on the deviation's scale
-  void take_out(const HubDeviation& deviation, double hub_s);
+  void take_out(const clocks::HubDeviation& deviation, double hub_s);
   std::span<const CountedStamp> stamps() const { return stamps_; }
   std::int64_t first_ns() const { return first_ns_; }  ///< [ns] receipt time of the first stamp
 
  private:
   std::vector<CountedStamp> stamps_;
-  CounterUnwrapper counter_;
-  DeviceStamp last_;
+  clocks::CounterUnwrapper counter_;
+  clocks::DeviceStamp last_;
   std::int64_t first_ns_ = 0;
   std::int64_t device_us_ = 0;  // since the first
 };
@@ -61,10 +61,10 @@ inline constexpr std::size_t kMinOfClock = 10;  ///< minimum number of stamps fo
 ClockFacts clock_facts(std::span<const CountedStamp> stamps);
 
 /// Clock line: the best straight line below all stamps (lower convex hull), in any order.
-ClockLine line_of(std::vector<Stamp> stamps);
+clocks::ClockLine line_of(std::vector<clocks::Stamp> stamps);
 
 /// The stamps without their counts.
-std::vector<Stamp> without_counts(std::span<const CountedStamp> stamps);
+std::vector<clocks::Stamp> without_counts(std::span<const CountedStamp> stamps);
 
 inline constexpr std::size_t kTurnsOfPiece = 8;  ///< turns over which a mirror's period is averaged
 
@@ -98,4 +98,4 @@ MirrorFacts on_hubs_clock(MirrorFacts facts, const ClockFacts& clock);
 /// rest.
 Gain gain_over_nominal(const MirrorFacts& facts, double nominal, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

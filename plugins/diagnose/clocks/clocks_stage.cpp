@@ -10,13 +10,14 @@
 
 #include <crisp/scan.hpp>
 
+#include "pipeline/clocks/envelope.hpp"
 #include "pipeline/clocks/unwrap.hpp"
 #include "pipeline/plot/write_plot.hpp"
 #include "plugins/diagnose/clocks/clock_plots.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 Parameter parameter(const char* name, const char* unit, double value, double std_error) {
@@ -106,8 +107,8 @@ std::string caveat_of(const DeviceFacts& facts) {
   constexpr double kFar =
       1e-3;  // [s] largest plausible median distance; few stamps tilt the line, but stay near
   constexpr double kNoDelay = 1;  // [s] larger than any median delay of a link
-  const bool steep = std::abs(facts.skew) >= 0.99 * kMaxSkew;
-  const bool unknown = facts.skew_std_error >= 0.9 * kMaxSkew;  // the data do not constrain the skew
+  const bool steep = std::abs(facts.skew) >= 0.99 * clocks::kMaxSkew;
+  const bool unknown = facts.skew_std_error >= 0.9 * clocks::kMaxSkew;  // the data do not constrain the skew
   if (!((steep || unknown) && facts.delay_median > kFar) && !(facts.delay_median > kNoDelay)) return {};
   return fmt::format(
       "{}: its stamps fit no clock of constant rate ({:+.0f} ± {:.0f} ppm; median distance {:.1f} ms). One wrong receipt or device time suffices for that. Check the plot of its stamps",
@@ -199,10 +200,10 @@ void DiagnoseClocksStage::add_clock(const Device& device, std::size_t tests, Con
   if (auto caveat = caveat_of(facts); !caveat.empty()) context.mark_untrusted(std::move(caveat));
   all.devices.push_back(facts);
   if (folder_ && stamps.size() > 1) {
-    std::vector<Plot> plots = {clock_plot(device.name, stamps, departure)};
+    std::vector<plot::Plot> plots = {clock_plot(device.name, stamps, departure)};
     if (mirror && device.nominal_period > 0)
       plots.push_back(mirror_plot(device.name, *mirror, device.nominal_period));
-    write_plots(*folder_ / (device.name + "_stamps.svg"), plots, context);
+    plot::write_plots(*folder_ / (device.name + "_stamps.svg"), plots, context);
   }
   if (departure && departure->kind == ClockDeparture::Kind::backlog) {
     all.unnamed.push_back({.covariate = "time",
@@ -213,7 +214,8 @@ void DiagnoseClocksStage::add_clock(const Device& device, std::size_t tests, Con
                            .p_value = departure->p_value,
                            .gain = {}});
   } else if (departure) {
-    departure->at += 1e-9 * static_cast<double>(device.telegrams.first_ns() - epoch_of_run(*first_ns_));
+    departure->at +=
+        1e-9 * static_cast<double>(device.telegrams.first_ns() - clocks::epoch_of_run(*first_ns_));
     all.findings.push_back(finding_of(*departure, device.name));
   }
 }
@@ -244,13 +246,14 @@ double DiagnoseClocksStage::hub_time(const StampTrack& track) const {
 
 /// A deviation that all devices' clocks share is the hub's, and no finding of each.
 void DiagnoseClocksStage::take_out_hub_deviation(Context& context) {
-  std::vector<std::vector<ReceivedStamp>> stamps;
+  std::vector<std::vector<clocks::ReceivedStamp>> stamps;
   for (const Device& device : longest_) {
     auto& received = stamps.emplace_back();
     for (const CountedStamp& s : device.telegrams.stamps())
-      received.push_back({.hub = hub_time(device.telegrams) + receipt_of(s.stamp), .lead = s.stamp.lead});
+      received.push_back(
+          {.hub = hub_time(device.telegrams) + clocks::receipt_of(s.stamp), .lead = s.stamp.lead});
   }
-  const auto deviation = find_hub_deviation(stamps);
+  const auto deviation = clocks::find_hub_deviation(stamps);
   if (!deviation) return;
   context.print(fmt::format(
       "the hub's clock deviates by up to {:.3f} ms from those of all devices; the tests below are without that",
@@ -278,4 +281,4 @@ void DiagnoseClocksStage::finish(Outputs& out, Context& context) {
   out.give(std::move(all_));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -14,7 +14,7 @@
 #include "pipeline/clocks/pauses.hpp"
 #include "plugins/diagnose/clocks/clock_departure.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage diagnose.clocks: tests clocks, links and mirrors by the telegrams' timestamps.
 class DiagnoseClocksStage final : public Stage {
@@ -46,8 +46,8 @@ class DiagnoseClocksStage final : public Stage {
   std::vector<Device> devices_;           // the lasers of the rig, then the plate, in the current recording
   std::vector<Device> longest_;           // in the recording with the most stamps so far
   std::optional<std::int64_t> first_ns_;  // first receipt time of any device
-  Pauses pauses_;
+  clocks::Pauses pauses_;
   Findings all_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kAround = 20;  // stamps before and after
@@ -29,7 +29,7 @@ double local_period(std::span<const CountedStamp> stamps, std::size_t at) {
   constexpr std::size_t kApart = 4;  // stamps, which reduces the effect of a late telegram
   std::vector<double> periods;
   for_each_pair(stamps, at, kApart, [&](double time, double counts) { periods.push_back(time / counts); });
-  return periods.empty() ? 0 : median_in_place(periods);
+  return periods.empty() ? 0 : statistics::median_in_place(periods);
 }
 
 /// [s] Standard deviation of the intervals between stamps about their counts times the period.
@@ -38,7 +38,9 @@ double local_scatter(std::span<const CountedStamp> stamps, std::size_t at) {
   std::vector<double> sizes;
   for_each_pair(stamps, at, 1,
                 [&](double time, double counts) { sizes.push_back(std::abs(time - period * counts)); });
-  return sizes.empty() ? kStampQuantum : std::max(kStampQuantum, kMadToSigma * median_in_place(sizes));
+  return sizes.empty()
+             ? kStampQuantum
+             : std::max(kStampQuantum, statistics::kMadToSigma * statistics::median_in_place(sizes));
 }
 
 }  // namespace
@@ -55,7 +57,7 @@ double device_jump(std::span<const CountedStamp> stamps, std::size_t at) {
     jumps.push_back(to.stamp.device - from.stamp.device - period * counts);
   }
   const double here = jumps.front();
-  const double lasting = median_in_place(jumps);
+  const double lasting = statistics::median_in_place(jumps);
   if (here * lasting <= 0) return 0;
   return std::abs(here) < std::abs(lasting) ? here : lasting;
 }
@@ -78,4 +80,4 @@ double log10_odds_of_jump(std::span<const CountedStamp> stamps, std::size_t at, 
   return (log_density(jump - by) - log_density(jump)) / std::numbers::ln10;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

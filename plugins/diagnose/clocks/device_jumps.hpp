@@ -6,7 +6,7 @@
 
 #include "plugins/diagnose/clocks/clock_stamps.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// [s] Lasting jump of a device's time at a stamp beyond its counter. A single late telegram does not count,
 /// since the next one compensates it.
@@ -23,4 +23,4 @@ std::size_t largest_device_jump(std::span<const CountedStamp> stamps, std::size_
 /// @param by  [s] jump, forward
 double log10_odds_of_jump(std::span<const CountedStamp> stamps, std::size_t at, double by);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

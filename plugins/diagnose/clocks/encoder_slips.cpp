@@ -16,7 +16,7 @@
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/clocks/angle_shift_regression.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kBlock = AngleShiftModel::kBlock;
@@ -147,7 +147,7 @@ EncoderSlip located(const std::vector<StepCandidate>& candidates, double size, c
 
 /// Whether the slip shows in the readings, or exceeds what poorly overlapping scans can produce.
 bool is_significant(const EncoderSlip& slip) {
-  const double smallest = (slip.is_in_readings ? 0.1 : 0.5) * kDegree;
+  const double smallest = (slip.is_in_readings ? 0.1 : 0.5) * data::kDegree;
   const double errors = slip.is_in_readings ? 6 : 10;
   const double size = std::abs(slip.by);
   return size > smallest && size > errors * slip.by_std_error;
@@ -237,7 +237,7 @@ class SlipSearch {
 std::array<double, 2> interval_of_change(const std::vector<std::array<double, 3>>& blocks,
                                          std::uint64_t seed) {
   constexpr std::size_t kDraws = 1000;
-  RandomStream random(seed, "slips");
+  statistics::RandomStream random(seed, "slips");
   std::vector<double> changes(kDraws);
   for (double& change : changes) {
     std::array<double, 3> sum{};
@@ -248,8 +248,8 @@ std::array<double, 2> interval_of_change(const std::vector<std::array<double, 3>
     change = std::sqrt(sum[1] / sum[2]) - std::sqrt(sum[0] / sum[2]);
   }
   constexpr double kTail = 0.025;
-  const double low = quantile_in_place(changes, kTail);
-  return {low, quantile_in_place(changes, 1 - kTail)};
+  const double low = statistics::quantile_in_place(changes, kTail);
+  return {low, statistics::quantile_in_place(changes, 1 - kTail)};
 }
 
 /// @param removed  slips already removed from the shifts
@@ -311,4 +311,4 @@ PlateTrajectory without_slips(const PlateTrajectory& plate, std::span<const Enco
   return plate.with_angles(std::move(angles));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,7 +10,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/plate_trajectory.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Lasting step of the encoder's count against the plate.
 struct EncoderSlip {
@@ -48,4 +48,4 @@ EncoderSlips find_encoder_slips(const Measurements& beams, const PlateTrajectory
 /// The trajectory without the slips.
 PlateTrajectory without_slips(const PlateTrajectory& plate, std::span<const EncoderSlip> slips);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

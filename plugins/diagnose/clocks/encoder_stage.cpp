@@ -9,7 +9,7 @@
 #include "plugins/diagnose/clocks/encoder_slips.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 Finding finding_of(const EncoderSlip& slip, const EncoderSlips& all) {
@@ -54,7 +54,7 @@ void DiagnoseEncoderStage::process(const Inputs& in, Outputs&, Context&) {
 }
 
 void DiagnoseEncoderStage::finish(Outputs& out, Context& context) {
-  const Sample sample = collected_.sample();
+  const estimate::Sample sample = collected_.sample();
   const EncoderSlips found = find_encoder_slips(
       sample.beams, *sample.plate, std::abs(context.rig().plate.angle_per_count()), context.seed());
   Findings own;
@@ -85,4 +85,4 @@ void DiagnoseEncoderStage::finish(Outputs& out, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,7 +11,7 @@
 
 #include "pipeline/estimate/measurement_buffer.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.encoder`: detects slips of the encoder, and corrects the plate's angles.
 class DiagnoseEncoderStage final : public Stage {
@@ -25,9 +25,9 @@ class DiagnoseEncoderStage final : public Stage {
   using Batch = std::pair<std::shared_ptr<const PlateTrajectory>, std::shared_ptr<const Measurements>>;
 
   bool correct_ = true;
-  MeasurementBuffer collected_;
+  estimate::MeasurementBuffer collected_;
   std::vector<Batch> batches_;
   Findings findings_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "plugins/diagnose/model/residual_variance.hpp"
 #include "plugins/diagnose/model/significance.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Refits the model to the accepted hypotheses.
@@ -76,4 +76,4 @@ void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, 
   mark_clock_lines(diagnosis.hypotheses, diagnosis.after.outcome, settings.skew_errors, middle);
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,13 +6,13 @@
 #include "plugins/diagnose/model/diagnosis.hpp"
 #include "plugins/diagnose/model/generalization.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// The fits that acceptance needs.
 struct AcceptanceFits {
   HeldOutScore held_out;
-  std::function<Refinement(const Calibration& start)> refit;        ///< to all turns
-  std::function<ProfileComparison(const Refinement& fit)> compare;  ///< with the simulated scanner
+  std::function<estimate::Refinement(const Calibration& start)> refit;        ///< to all turns
+  std::function<ProfileComparison(const estimate::Refinement& fit)> compare;  ///< with the simulated scanner
 };
 
 /// Decides which hypotheses the extended model keeps. It refits the model to those that are accepted, and
@@ -31,4 +31,4 @@ struct AcceptanceFits {
 void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
                       const TermRegistry& terms, const DiagnosisSettings& settings, double middle);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 
 #include "pipeline/estimate/surfel_jacobian.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kOfEquationTwo = 4;  // λ, τ, α, η: the first parameters of a laser's chain
@@ -85,12 +85,13 @@ void CandidateJacobian::add_terms_of_model() {
   }
 }
 
-AddedTerms CandidateJacobian::terms_to_add() const {
-  std::vector<std::vector<AddedTerm>> of_laser(model_.lasers());
+model::AddedTerms CandidateJacobian::terms_to_add() const {
+  std::vector<std::vector<model::AddedTerm>> of_laser(model_.lasers());
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];
     if (candidate.in_model) continue;
-    AddedTerm added{.term = terms_.get(candidate.term.term), .values = {}, .parameters = {}, .columns = {}};
+    model::AddedTerm added{
+        .term = terms_.get(candidate.term.term), .values = {}, .parameters = {}, .columns = {}};
     for (const Parameter& parameter : candidate.term.parameters) added.values.push_back(parameter.value);
     const auto own = sizes(added.term->info());
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -117,13 +118,13 @@ Eigen::VectorXd CandidateJacobian::sizes_of(std::size_t candidate) const {
   return values;
 }
 
-DerivativeRows CandidateJacobian::rows(const Sample& sample) const {
-  return [this, &sample](const Surfel& surfel, std::span<const std::uint32_t> beams,
+quality::DerivativeRows CandidateJacobian::rows(const estimate::Sample& sample) const {
+  return [this, &sample](const quality::Surfel& surfel, std::span<const std::uint32_t> beams,
                          std::span<const double> range_change, std::span<double> rows) {
-    const Measurements met = with_range_changes(sample.beams, beams, range_change);
-    fill_surfel_rows(model_, met, *sample.plate, free_, surfel.normal, columns_, parameters_, rows);
+    const Measurements met = estimate::with_range_changes(sample.beams, beams, range_change);
+    estimate::fill_surfel_rows(model_, met, *sample.plate, free_, surfel.normal, columns_, parameters_, rows);
     added_.fill_rows(met, *sample.plate, surfel.normal, parameters_, rows);
   };
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "pipeline/quality/surfel_equations.hpp"
 #include "plugins/diagnose/model/candidates.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Jacobian of the ranges with respect to the base parameters (λ, τ, α, η) and the size parameters of every
 /// candidate, whether the model has the candidate's term or not.
@@ -34,12 +34,12 @@ class CandidateJacobian {
 
   /// Rows of the Jacobian: range changes normal to the surfels. They refer to `sample` and to this object,
   /// which must outlive them.
-  DerivativeRows rows(const Sample& sample) const;
+  quality::DerivativeRows rows(const estimate::Sample& sample) const;
 
  private:
   void add_columns(std::size_t candidate);
   void add_terms_of_model();
-  AddedTerms terms_to_add() const;
+  model::AddedTerms terms_to_add() const;
 
   std::vector<Candidate> candidates_;
   const TermRegistry& terms_;
@@ -51,7 +51,7 @@ class CandidateJacobian {
   SensorModel model_;
   std::vector<std::size_t> free_;     // parameters of the model: the base's and its terms'
   std::vector<std::size_t> columns_;  // of the Jacobian, for each of `free_`
-  AddedTerms added_;                  // the candidates that the model does not have
+  model::AddedTerms added_;           // the candidates that the model does not have
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,14 +10,14 @@
 #include "pipeline/estimate/requested_terms.hpp"
 #include "plugins/diagnose/model/conditional_score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Base parameters (λ, τ, α, η) that the refinement estimated.
-std::vector<std::size_t> base_of(const Refinement& refinement) {
+std::vector<std::size_t> base_of(const estimate::Refinement& refinement) {
   std::vector<std::size_t> base;
   for (const std::size_t parameter : refinement.outcome.free) {
-    if (!declared(refinement.outcome.model, parameter)) base.push_back(parameter);
+    if (!estimate::declared(refinement.outcome.model, parameter)) base.push_back(parameter);
   }
   return base;
 }
@@ -81,7 +81,7 @@ std::vector<Candidate> possible(const TermRegistry& terms, const SensorModel& mo
 
 }  // namespace
 
-CandidateSearch::CandidateSearch(const SurfaceObservations& observations, const Refinement& at,
+CandidateSearch::CandidateSearch(const SurfaceObservations& observations, const estimate::Refinement& at,
                                  const TermRegistry& terms, const DiagnosisSettings& settings,
                                  const ProfileComparison& left)
     : observations_(observations),
@@ -97,7 +97,7 @@ CandidateSearch::CandidateSearch(const SurfaceObservations& observations, const 
 
 CandidateSearch::View CandidateSearch::view(std::vector<Candidate> candidates, std::size_t beams) const {
   CandidateJacobian jacobian(model_, base_, std::move(candidates), terms_);
-  NormalEquations equations = from_neutral(jacobian, observations_.equations(jacobian, beams));
+  quality::NormalEquations equations = from_neutral(jacobian, observations_.equations(jacobian, beams));
   return {.jacobian = std::move(jacobian), .equations = std::move(equations)};
 }
 
@@ -198,4 +198,4 @@ std::vector<Limit> CandidateSearch::unobservable(const std::vector<Hypothesis>& 
   return hidden;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -12,11 +12,11 @@
 #include "plugins/diagnose/model/stepwise_selection.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Settings of the candidate search and of the diagnosis.
 struct DiagnosisSettings {
-  RefinementSettings refinement;
+  estimate::RefinementSettings refinement;
   SelectionSettings selection;
   std::size_t beams = 150'000;  ///< beams of the first candidate tests and of the residual profiles
   std::size_t refine_beams =
@@ -45,8 +45,9 @@ class CandidateSearch {
   /// @param left          residual profiles of the model. Fine shapes become candidates only over the
   /// covariate
   ///                      with the largest systematic residual of a laser
-  CandidateSearch(const SurfaceObservations& observations, const Refinement& at, const TermRegistry& terms,
-                  const DiagnosisSettings& settings, const ProfileComparison& left = {});
+  CandidateSearch(const SurfaceObservations& observations, const estimate::Refinement& at,
+                  const TermRegistry& terms, const DiagnosisSettings& settings,
+                  const ProfileComparison& left = {});
 
   const std::vector<std::size_t>& base() const { return base_; }
   std::size_t tests() const { return tests_; }  ///< number of different candidates tested
@@ -68,7 +69,7 @@ class CandidateSearch {
  private:
   struct View {
     CandidateJacobian jacobian;
-    NormalEquations equations;
+    quality::NormalEquations equations;
   };
   View view(std::vector<Candidate> candidates, std::size_t beams) const;
   std::vector<Hypothesis> needs_in(const View& view, const SelectionSettings& selection,
@@ -84,4 +85,4 @@ class CandidateSearch {
   std::size_t tests_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 
 #include "plugins/diagnose/model/score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 double tried(const Tries& tries, double step, const Coverage& coverage) {
@@ -167,4 +167,4 @@ std::vector<Candidate> with_values_of(const Calibration& calibration, std::vecto
   return chosen;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 struct ScoreTest;
 
@@ -104,4 +104,4 @@ Calibration with_terms(Calibration calibration, const std::vector<Candidate>& ch
 /// Sets the candidates' values to the calibration's.
 std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -5,7 +5,7 @@
 
 #include "plugins/diagnose/model/significance.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr const char* kDrift = "clock.drift";  // its parameters are the skew at the epoch and its growth
@@ -16,7 +16,7 @@ struct Drift {
   Parameter growth;  ///< [1/s]
 };
 
-Parameter estimated(const Outcome& outcome, Eigen::Index at) {
+Parameter estimated(const estimate::Outcome& outcome, Eigen::Index at) {
   const auto parameter = outcome.free[static_cast<std::size_t>(at)];
   return {.name = outcome.model.names()[parameter],
           .unit = "1",
@@ -25,7 +25,7 @@ Parameter estimated(const Outcome& outcome, Eigen::Index at) {
 }
 
 /// Empty for other hypotheses.
-std::optional<Drift> drift_of(const Hypothesis& hypothesis, const Outcome& outcome) {
+std::optional<Drift> drift_of(const Hypothesis& hypothesis, const estimate::Outcome& outcome) {
   if (hypothesis.candidate.term.term != kDrift || !hypothesis.candidate.laser()) return {};
   const auto places = parameter_indices(hypothesis.candidate, outcome);
   if (places.size() != 2 || !places[0] || !places[1]) return {};
@@ -45,7 +45,7 @@ std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, Cloc
   return errors;
 }
 
-void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const Outcome& outcome,
+void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
                       const std::vector<double>& skew_errors, double middle) {
   for (Hypothesis& one : hypotheses) {
     const auto drift = one.accepted ? drift_of(one, outcome) : std::nullopt;
@@ -58,7 +58,7 @@ void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const Outcome& outcom
 }
 
 std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypotheses,
-                                             const Outcome& outcome) {
+                                             const estimate::Outcome& outcome) {
   EstimatorArtifact found{
       .name = "clock_line",
       .parameters = {},
@@ -71,4 +71,4 @@ std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypo
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

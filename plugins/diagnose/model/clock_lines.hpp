@@ -13,7 +13,7 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "plugins/diagnose/model/hypothesis.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Standard error of each laser's skew against the plate's clock, as the clock maps have it; 0 for a clock
 /// without a map, which counts as exact.
@@ -23,11 +23,11 @@ std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, Cloc
 /// standard errors, and the skew does not change. Such a drift corrects the line, and is no cause.
 ///
 /// @param middle  [s since the run's epoch] of the recording
-void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const Outcome& outcome,
+void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
                       const std::vector<double>& skew_errors, double middle);
 
 /// The skews by which the lines of the clocks were corrected.
 std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypotheses,
-                                             const Outcome& outcome);
+                                             const estimate::Outcome& outcome);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 
 #include "plugins/diagnose/model/conditional_score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 template <class Predicate>
@@ -128,4 +128,4 @@ void Competition::add_competitor(SelectedCandidate& choice, std::size_t candidat
     *known = {.candidate = candidate, .behind = behind};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

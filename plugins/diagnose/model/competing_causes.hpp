@@ -7,7 +7,7 @@
 #include "plugins/diagnose/model/candidate_jacobian.hpp"
 #include "plugins/diagnose/model/score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// A candidate that could replace a selected one.
 struct CompetingCandidate {
@@ -31,7 +31,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one
 class Competition {
  public:
   /// @param equations  normal equations in the Jacobian's columns; both outlive this
-  Competition(const CandidateJacobian& jacobian, const NormalEquations& equations)
+  Competition(const CandidateJacobian& jacobian, const quality::NormalEquations& equations)
       : jacobian_(jacobian), equations_(equations) {}
 
   /// A selected candidate with the causes that could be in its place, each in its best form.
@@ -63,7 +63,7 @@ class Competition {
   void add_competitor(SelectedCandidate& choice, std::size_t candidate, double behind) const;
 
   const CandidateJacobian& jacobian_;
-  const NormalEquations& equations_;
+  const quality::NormalEquations& equations_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

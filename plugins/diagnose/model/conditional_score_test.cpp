@@ -7,8 +7,10 @@
 
 #include "pipeline/estimate/observability.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using quality::NormalEquations;
 
 /// Parameters estimated jointly with the tested ones: the base's and those of selected candidates.
 std::vector<std::size_t> estimated_with(const std::vector<std::size_t>& taken,
@@ -111,10 +113,10 @@ std::string known_instead(std::size_t candidate, const std::vector<std::size_t>&
     const auto i = static_cast<Eigen::Index>(own[k]);
     const auto at = static_cast<Eigen::Index>(k);
     if (scaled(i, i) < kNothing || left(at, at) > kLittle * equations.matrix(i, i)) continue;
-    const std::string combination = known_with(own[k], known, scaled, jacobian.names(), scale);
+    const std::string combination = estimate::known_with(own[k], known, scaled, jacobian.names(), scale);
     text += (text.empty() || combination.empty() ? "" : "; ") + combination;
   }
   return text;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -18,14 +18,14 @@
 #include "pipeline/statistics/weighted_mean.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 using Turn = CrossValidator::Score::Turn;
 
 constexpr double kMinTurns = 4;
 constexpr double kMinPieces = 8;
-constexpr double kNarrow = 15 * kDegree;  // a quarter of the shortest harmonic's period
+constexpr double kNarrow = 15 * data::kDegree;  // a quarter of the shortest harmonic's period
 
 /// Turn of the plate and recording of each beam.
 struct Pieces {
@@ -36,8 +36,8 @@ struct Pieces {
   bool is_held_out(std::size_t i) const { return (are_several ? recording[i] : turn[i]) % 2 == 1; }
 };
 
-Pieces pieces_of(const Sample& sample) {
-  const RecordingNumbers number(*sample.plate);
+Pieces pieces_of(const estimate::Sample& sample) {
+  const data::RecordingNumbers number(*sample.plate);
   Pieces pieces{.turn = {}, .recording = {}, .are_several = number.count() > 1};
   std::vector<double> turned;
   double way = 0;
@@ -65,8 +65,8 @@ Pieces pieces_of(const Sample& sample) {
 /// Mean residual of each surface by laser, and by laser and side (front, back).
 class ViewMeans {
  public:
-  ViewMeans(std::span<const std::uint32_t> members, const std::vector<SurfelResidual>& residuals,
-            const BeamsView& beams) {
+  ViewMeans(std::span<const std::uint32_t> members, const std::vector<quality::SurfelResidual>& residuals,
+            const quality::BeamsView& beams) {
     for (std::size_t k = 0; k < members.size(); ++k) {
       const std::uint32_t view = beams.views[members[k]];
       const double weight = residuals[k].weight / std::pow(residuals[k].spread, 2);
@@ -76,7 +76,7 @@ class ViewMeans {
   }
 
   /// Adds one beam's contribution to its turn's score.
-  void add(const SurfelResidual& r, std::uint32_t view, double noise, Turn& turn) const {
+  void add(const quality::SurfelResidual& r, std::uint32_t view, double noise, Turn& turn) const {
     const double laser = lasers_.at(view / 2).value();
     const double spread = r.spread * noise;
     turn.weight += r.weight;
@@ -88,8 +88,8 @@ class ViewMeans {
   }
 
  private:
-  std::map<std::uint32_t, Mean> lasers_;
-  std::map<std::uint32_t, Mean> sides_;
+  std::map<std::uint32_t, statistics::Mean> lasers_;
+  std::map<std::uint32_t, statistics::Mean> sides_;
 };
 
 double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn, double Turn::*part) {
@@ -123,18 +123,19 @@ double value_of(const Metric& metric, const std::vector<Turn>& turns, const std:
 
 }  // namespace
 
-Halves halves_of(const Sample& sample) {
+Halves halves_of(const estimate::Sample& sample) {
   const Pieces pieces = pieces_of(sample);
   Halves halves;
-  halves.fitted = select(sample, [&](std::size_t i) { return !pieces.is_held_out(i); });
-  halves.held_out = select(sample, [&](std::size_t i) { return pieces.is_held_out(i); });
+  halves.fitted = estimate::select(sample, [&](std::size_t i) { return !pieces.is_held_out(i); });
+  halves.held_out = estimate::select(sample, [&](std::size_t i) { return pieces.is_held_out(i); });
   for (std::size_t i = 0; i < pieces.turn.size(); ++i) {
     if (pieces.is_held_out(i)) halves.turn.push_back(pieces.turn[i]);
   }
   return halves;
 }
 
-CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const SurfelSettings& settings)
+CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser,
+                               const quality::SurfelSettings& settings)
     : halves_(std::move(halves)), settings_(settings) {
   constexpr std::size_t kBeams = 200'000;
   const SurfaceObservations observations(chooser, halves_.held_out, settings, kBeams);
@@ -145,8 +146,9 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const 
   given_noise_.assign(reported.begin(), reported.end());
   double squares = 0;
   double weight = 0;
-  for (const Surfel& surfel : surfels_.surfels) {
-    for (const SurfelResidual& r : residuals_of(surfel, surfels_, observations.beams(), settings_)) {
+  for (const quality::Surfel& surfel : surfels_.surfels) {
+    for (const quality::SurfelResidual& r :
+         quality::residuals_of(surfel, surfels_, observations.beams(), settings_)) {
       squares += r.weight * std::pow(r.distance / r.spread, 2);
       weight += r.weight;
     }
@@ -155,15 +157,15 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser, const 
 }
 
 CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
-  PlacedBeams placed(model, halves_.held_out);
+  estimate::PlacedBeams placed(model, halves_.held_out);
   placed.align_with(*reference_, halves_.held_out);
-  const BeamsView beams = placed.view(given_noise_);
+  const quality::BeamsView beams = placed.view(given_noise_);
   Score score;
   score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});
   std::vector<Vectors> clouds(score.turns.size());
-  for (const Surfel& surfel : surfels_.surfels) {
+  for (const quality::Surfel& surfel : surfels_.surfels) {
     const auto members = surfels_.beams_of(surfel);
-    const auto residuals = residuals_of(surfel, surfels_, beams, settings_);
+    const auto residuals = quality::residuals_of(surfel, surfels_, beams, settings_);
     const ViewMeans views(members, residuals, beams);
     for (std::size_t k = 0; k < members.size(); ++k) {
       const std::size_t i = members[k];
@@ -193,7 +195,7 @@ std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after)
   std::vector<Gain> gains;
   if (all.size() < 2) return gains;
   // A fixed seed: every metric gets the same bootstrap samples.
-  RandomStream random(all.size(), "turns");
+  statistics::RandomStream random(all.size(), "turns");
   std::vector<std::vector<std::size_t>> draws(kDraws, std::vector<std::size_t>(all.size()));
   for (auto& drawn : draws) {
     for (auto& turn : drawn) turn = all[random.below(all.size())];
@@ -218,4 +220,4 @@ std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after)
   return gains;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,28 +11,28 @@
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Two-fold split of a sample by turns of the plate or by recordings: a training half and a held-out half.
 struct Halves {
-  Sample fitted;
-  Sample held_out;
+  estimate::Sample fitted;
+  estimate::Sample held_out;
   std::vector<std::uint32_t> turn;  ///< turn of each held-out beam, from 0
 };
 
 /// Splits by recordings if there are several, otherwise by turns of the plate. A recording of fewer than four
 /// turns is split by pieces of 15°, or by eighths if these are shorter: half of a turn alone leaves the
 /// harmonics of the plate angle open.
-Halves halves_of(const Sample& sample);
+Halves halves_of(const estimate::Sample& sample);
 
 /// Held-out cross-validation of sensor models by the distances of beams to surfaces. The beams and their
 /// surfaces are selected once, with a model that has none of the terms under test. Rigid motions of a whole
 /// cloud count for nothing: two fits may differ by a rotation that the data do not determine.
 class CrossValidator {
  public:
-  CrossValidator(Halves halves, const SensorModel& chooser, const SurfelSettings& settings);
+  CrossValidator(Halves halves, const SensorModel& chooser, const quality::SurfelSettings& settings);
 
-  const Sample& fitted() const { return halves_.fitted; }
+  const estimate::Sample& fitted() const { return halves_.fitted; }
 
   /// Held-out score of one model, per turn.
   struct Score {
@@ -55,11 +55,11 @@ class CrossValidator {
 
  private:
   Halves halves_;
-  SurfelSettings settings_;
-  Surfels surfels_;
-  std::optional<PlacedBeams> reference_;  ///< the held-out beams by the selecting model
-  std::vector<float> given_noise_;        ///< relative noise of the held-out beams
-  double noise_ = 0;                      ///< [σ] of the residuals of the selecting model
+  quality::SurfelSettings settings_;
+  quality::Surfels surfels_;
+  std::optional<estimate::PlacedBeams> reference_;  ///< the held-out beams by the selecting model
+  std::vector<float> given_noise_;                  ///< relative noise of the held-out beams
+  double noise_ = 0;                                ///< [σ] of the residuals of the selecting model
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

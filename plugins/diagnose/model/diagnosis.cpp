@@ -22,7 +22,7 @@
 #include "plugins/diagnose/model/per_model.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 std::set<std::string> names_of(const std::vector<Candidate>& candidates) {
@@ -41,13 +41,13 @@ bool is_new(const Hypothesis& hypothesis) { return !hypothesis.candidate.in_mode
 
 class Diagnoser {
  public:
-  Diagnoser(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+  Diagnoser(const SensorModel& start, const estimate::Sample& sample, const TermRegistry& terms,
             const DiagnosisSettings& settings, const DiagnosisReporter& report)
       : sample_(sample), terms_(terms), settings_(settings), report_(report), start_(start.calibration()) {}
 
   Diagnosis run() {
     report(0, "refining without any terms");
-    const Refinement plain = refined(with_terms(start_, {}), sample_);
+    const estimate::Refinement plain = refined(with_terms(start_, {}), sample_);
     limit_lags(plain.outcome.model);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
@@ -73,7 +73,7 @@ class Diagnoser {
     accept_or_reject(result, plain,
                      {.held_out = held_out,
                       .refit = [this](const Calibration& start) { return refined(start, sample_); },
-                      .compare = [this](const Refinement& fit) { return left_by(fit); }},
+                      .compare = [this](const estimate::Refinement& fit) { return left_by(fit); }},
                      terms_, settings_, 0.5 * (sample_.plate->begin() + sample_.plate->end()));
     if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
       result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
@@ -82,14 +82,14 @@ class Diagnoser {
   /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
   static constexpr int kSearches = 4;
 
-  Refinement refined(const Calibration& calibration, const Sample& sample) const {
-    RefinementSettings settings = settings_.refinement;
-    settings.terms = terms_in(calibration, terms_);
+  estimate::Refinement refined(const Calibration& calibration, const estimate::Sample& sample) const {
+    estimate::RefinementSettings settings = settings_.refinement;
+    settings.terms = model::terms_in(calibration, terms_);
     settings.forms = true;
     settings.searches = kSearches;
     settings.prior.earliest_eta = lags_.earliest;
     settings.prior.latest_eta = lags_.latest;
-    return refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
+    return estimate::refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
       stop_if_requested();
       return true;
     });
@@ -98,8 +98,8 @@ class Diagnoser {
   /// Keeps the beams that the encoder readings cover at each η near the plain model's, and limits η to that
   /// neighbourhood in further refinements. A distant start may have moved by more than its prior.
   void limit_lags(const SensorModel& plain) {
-    lags_ = lag_range(plain, settings_.refinement.prior.eta);
-    inside_ = covered(sample_, lags_.earliest, lags_.latest);
+    lags_ = estimate::lag_range(plain, settings_.refinement.prior.eta);
+    inside_ = estimate::covered(sample_, lags_.earliest, lags_.latest);
   }
 
   void stop_if_requested() const {
@@ -185,7 +185,7 @@ class Diagnoser {
       }
       try {
         result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen), sample_);
-      } catch (const UncoveredBeams&) {
+      } catch (const estimate::UncoveredBeams&) {
         if (!reject_new_time_terms(state, before)) throw;
       }
     }
@@ -206,7 +206,7 @@ class Diagnoser {
 
   /// Adds the covariance over forms: the refinement gives only the curvature at the best form.
   static void add_form_errors(Diagnosis& result) {
-    Outcome& outcome = result.after.outcome;
+    estimate::Outcome& outcome = result.after.outcome;
     for (const Hypothesis& hypothesis : result.hypotheses) {
       const auto others = result.other_forms.find(hypothesis.candidate.name);
       if (others == result.other_forms.end()) continue;
@@ -227,7 +227,7 @@ class Diagnoser {
         model, [&] { return compare_with_simulation(observations, settings_.refinement.surfels, 1); });
   }
 
-  ProfileComparison left_by(const Refinement& refinement) const {
+  ProfileComparison left_by(const estimate::Refinement& refinement) const {
     const SensorModel& model = refinement.outcome.model;
     return comparisons_.of(model, [&] {
       const SurfaceObservations observations(model, inside_, settings_.refinement.surfels, settings_.beams);
@@ -235,22 +235,22 @@ class Diagnoser {
     });
   }
 
-  const Sample& sample_;
+  const estimate::Sample& sample_;
   const TermRegistry& terms_;
   const DiagnosisSettings& settings_;
   const DiagnosisReporter& report_;
   Calibration start_;
-  LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
-                 .latest = std::numeric_limits<double>::infinity()};
-  Sample inside_;
+  estimate::LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
+                           .latest = std::numeric_limits<double>::infinity()};
+  estimate::Sample inside_;
   mutable PerModel<ProfileComparison> comparisons_;
 };
 
 }  // namespace
 
-Diagnosis diagnose(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+Diagnosis diagnose(const SensorModel& start, const estimate::Sample& sample, const TermRegistry& terms,
                    const DiagnosisSettings& settings, const DiagnosisReporter& report) {
   return Diagnoser(start, sample, terms, settings, report).run();
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

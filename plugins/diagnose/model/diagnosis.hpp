@@ -11,12 +11,12 @@
 #include "plugins/diagnose/model/hypothesis.hpp"
 #include "plugins/diagnose/model/residual_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Result of the diagnosis: refined models before and after extension, with hypotheses and residuals.
 struct Diagnosis {
-  Refinement before;  ///< without further terms
-  Refinement after;   ///< with the accepted terms
+  estimate::Refinement before;  ///< without further terms
+  estimate::Refinement after;   ///< with the accepted terms
   std::vector<Hypothesis> hypotheses;
   /// Evaluated forms of each candidate with a grid, by name. The covariance in `after` includes them.
   std::map<std::string, std::vector<Candidate::OtherForm>> other_forms;
@@ -41,7 +41,7 @@ using DiagnosisReporter = std::function<void(double fraction, const std::string&
 /// @param sample  all beams; the encoder readings need not cover them all
 /// @throws Error        as refine_by_surfels() does
 /// @throws Interrupted  when `settings.interrupted` returns true
-Diagnosis diagnose(const SensorModel& start, const Sample& sample, const TermRegistry& terms,
+Diagnosis diagnose(const SensorModel& start, const estimate::Sample& sample, const TermRegistry& terms,
                    const DiagnosisSettings& settings, const DiagnosisReporter& report = {});
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

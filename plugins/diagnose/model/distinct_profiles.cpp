@@ -10,7 +10,7 @@
 #include "pipeline/statistics/multiple_testing.hpp"
 #include "plugins/diagnose/model/mean_residuals.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Profiles that are selected together: one, or all lasers' over a covariate that lasers share.
@@ -103,7 +103,7 @@ class ShadowSearch {
     own.means = means_in(layouts_[p], residuals_);
     own.rms = systematic_rms(own.means, errors);
     Profile left = profiles_[p];
-    left.p_value = sidak_p_value(tests_, profile_p_value(layouts_[p], own.means, errors));
+    left.p_value = statistics::sidak_p_value(tests_, profile_p_value(layouts_[p], own.means, errors));
     constexpr double kHalf = 0.5;
     if (left.is_significant() && own.rms >= kHalf * profiles_[p].rms) return;
     profiles_[p].is_shadow = true;
@@ -131,4 +131,4 @@ void mark_shadows(std::vector<Profile>& profiles, const std::vector<QuantileBins
   ShadowSearch(profiles, layouts, residuals, tests).run();
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 #include "plugins/diagnose/model/quantile_bins.hpp"
 #include "plugins/diagnose/model/residuals.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Marks the significant profiles that are shadows of others. One deviation shows over several covariates:
 /// what depends on the mirror angle, for example, also depends on the incidence a little, since a laser sees
@@ -23,4 +23,4 @@ namespace crisp {
 void mark_shadows(std::vector<Profile>& profiles, const std::vector<QuantileBins>& layouts,
                   const WeightedResiduals& residuals, double tests);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,11 +9,11 @@
 #include <numbers>
 #include <vector>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// [rad] Plate angle at the first beam of each scan of a laser.
-std::vector<double> directions(const Sample& sample, std::size_t laser) {
+std::vector<double> directions(const estimate::Sample& sample, std::size_t laser) {
   std::vector<double> angles;
   int last = -1;
   for (std::size_t i = 0; i < sample.beams.size(); ++i) {
@@ -43,9 +43,9 @@ std::optional<std::size_t> lines_of(std::vector<double> angles) {
 
 }  // namespace
 
-std::optional<EstimatorArtifact> aliasing(const Sample& sample) {
+std::optional<EstimatorArtifact> aliasing(const estimate::Sample& sample) {
   constexpr double kTwoTurns = 4 * std::numbers::pi;
-  if (sample.beams.size() == 0 || turned(sample) < kTwoTurns) return {};
+  if (sample.beams.size() == 0 || estimate::turned(sample) < kTwoTurns) return {};
   const std::size_t lasers = 1U + std::ranges::max(sample.beams.laser);
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     const auto lines = lines_of(directions(sample, laser));
@@ -61,7 +61,7 @@ std::optional<EstimatorArtifact> aliasing(const Sample& sample) {
   return {};
 }
 
-std::optional<EstimatorArtifact> density_bias(const Calibration& start, const Outcome& plain) {
+std::optional<EstimatorArtifact> density_bias(const Calibration& start, const estimate::Outcome& plain) {
   constexpr double kClear = 3;  // [standard errors]
   if (!start.provenance.contains("calibration") || start.provenance.contains("refinement")) return {};
   const SensorModel came(start);
@@ -86,4 +86,4 @@ std::optional<EstimatorArtifact> density_bias(const Calibration& start, const Ou
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

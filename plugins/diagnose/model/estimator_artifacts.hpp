@@ -8,12 +8,12 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/sample.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Detects aliasing of the plate angle: the plate's rate and the mirror's are commensurate, so scans sample a
 /// few directions only. Effects of the plate angle then show in these directions alone, and the RQE optimum
 /// shifts.
-std::optional<EstimatorArtifact> aliasing(const Sample& sample);
+std::optional<EstimatorArtifact> aliasing(const estimate::Sample& sample);
 
 /// Estimates the density bias of an entropy-based calibration: its difference from the surface-based
 /// estimate. The RQE optimum shifts with the kernel width and with the sampling density of the surfaces,
@@ -21,6 +21,6 @@ std::optional<EstimatorArtifact> aliasing(const Sample& sample);
 ///
 /// @param start  the incoming calibration
 /// @param plain  the same, refined by surfaces without further terms
-std::optional<EstimatorArtifact> density_bias(const Calibration& start, const Outcome& plain);
+std::optional<EstimatorArtifact> density_bias(const Calibration& start, const estimate::Outcome& plain);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

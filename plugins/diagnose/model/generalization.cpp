@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Tests whether the held-out likelihood rises. Its confidence interval is reported, but is no criterion: the
@@ -81,4 +81,4 @@ void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossVa
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 #include "plugins/diagnose/model/cross_validation.hpp"
 #include "plugins/diagnose/model/hypothesis.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Held-out score of a calibration with its terms, fitted to the training turns alone.
 using HeldOutScore = std::function<CrossValidator::Score(const Calibration& start)>;
@@ -23,4 +23,4 @@ using HeldOutScore = std::function<CrossValidator::Score(const Calibration& star
 void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossValidator::Score& plain,
                               const Calibration& found, const HeldOutScore& held_out);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

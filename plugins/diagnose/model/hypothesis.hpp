@@ -11,7 +11,7 @@
 #include "plugins/diagnose/model/candidates.hpp"
 #include "plugins/diagnose/model/score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Hypothesis that the sensor has one candidate term, with its tests and its state.
 struct Hypothesis {
@@ -46,4 +46,4 @@ struct Hypothesis {
   double square(double noise) const { return std::pow(test.visible * noise, 2); }
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

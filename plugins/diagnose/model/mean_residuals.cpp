@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 std::vector<double> means_in(const QuantileBins& layout, const WeightedResiduals& residuals) {
   std::vector<double> means;
@@ -18,7 +18,7 @@ std::vector<double> means_in(const QuantileBins& layout, const WeightedResiduals
     for (std::size_t k = layout.first[b]; k < layout.first[b + 1]; ++k) {
       const double weight = residuals.weight[layout.residual[k]];
       sum += weight * residuals.value[layout.residual[k]];
-      slope += biweight_psi_derivative(weight);
+      slope += statistics::biweight_psi_derivative(weight);
     }
     means.push_back(slope > 0 ? sum / slope : 0);
   }
@@ -45,4 +45,4 @@ double systematic_rms(const std::vector<double>& means, const std::vector<double
   return std::sqrt(std::max(0.0, square / static_cast<double>(means.size())));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

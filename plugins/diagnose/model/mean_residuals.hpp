@@ -6,7 +6,7 @@
 #include "plugins/diagnose/model/quantile_bins.hpp"
 #include "plugins/diagnose/model/residuals.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// [m] Mean residual in each bin: one step of Tukey's M-estimator, with weights relative to each view's own
 /// location. A profile of one laser is centred: the laser's common offset depends on no covariate and belongs
@@ -23,4 +23,4 @@ double profile_p_value(const QuantileBins& layout, const std::vector<double>& me
 /// [m] RMS of some means, less the contribution of noise.
 double systematic_rms(const std::vector<double>& means, const std::vector<double>& errors);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -19,7 +19,7 @@
 #include "plugins/diagnose/report/findings_report.hpp"
 #include "plugins/diagnose/report/residual_plots.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Context& context) {
@@ -27,7 +27,7 @@ void draw(const std::filesystem::path& folder, const Diagnosis& diagnosis, Conte
   for (const auto& laser : context.rig().lasers) lasers.push_back(laser.name);
   const auto draw_one = [&](std::size_t laser, const std::string& name) {
     const auto plots = residual_plots(laser, lasers, diagnosis.left_before, diagnosis.left_after);
-    if (!plots.empty()) write_plots(folder / (name + "_residuals.svg"), plots, context);
+    if (!plots.empty()) plot::write_plots(folder / (name + "_residuals.svg"), plots, context);
   };
   for (std::size_t laser = 0; laser < lasers.size(); ++laser) draw_one(laser, lasers[laser]);
   draw_one(kAllLasers, "scanner");
@@ -94,16 +94,16 @@ void DiagnoseModelStage::process(const Inputs& in, Outputs&, Context& context) {
 }
 
 void DiagnoseModelStage::finish(Outputs& out, Context& context) {
-  Sample sample = collected_.sample();
+  estimate::Sample sample = collected_.sample();
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   settings_.refinement.surfels.noise = noise_;
-  settings_.refinement.prior.nominal = nominal_values(context.rig());
+  settings_.refinement.prior.nominal = estimate::nominal_values(context.rig());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const SensorModel start(*start_, terms);
-  if (RecordingNumbers(*sample.plate).count() > 1) {
+  if (data::RecordingNumbers(*sample.plate).count() > 1) {
     context.progress(0, "estimating each recording's lags");
-    const RecordingLags lags = lags_of_recordings(start, sample, settings_.refinement);
-    sample = with_common_lags(std::move(sample), lags);
+    const estimate::RecordingLags lags = estimate::lags_of_recordings(start, sample, settings_.refinement);
+    sample = estimate::with_common_lags(std::move(sample), lags);
   }
   settings_.skew_errors = skew_errors(context.rig(), clocks_);
   settings_.excluded = determined_by_stamps(all_);
@@ -120,9 +120,9 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   if (resolves_caveats(diagnosis)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             fmt::format("the residuals of the extended model agree with simulated noise ({})",
-                                        chance_in_words(diagnosis.left_after.p_value)));
+                                        data::chance_in_words(diagnosis.left_after.p_value)));
   }
-  Calibration calibration = calibration_of(diagnosis.after.outcome, context.rig());
+  Calibration calibration = estimate::calibration_of(diagnosis.after.outcome, context.rig());
   calibration.provenance = start_->provenance;
   calibration.provenance["diagnosis"] = "diagnose.model";
   calibration.quality = start_->quality;
@@ -139,7 +139,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   }
   context.print(in_words(diagnosis, findings));
   // Tables that earlier stages printed are outdated.
-  if (extends(diagnosis)) context.print(table_of(calibration, context.rig()));
+  if (extends(diagnosis)) context.print(estimate::table_of(calibration, context.rig()));
   if (folder_) draw(*folder_, diagnosis, context);
   context.report({{"findings", findings.findings.size()},
                   {"unnamed", findings.unnamed.size()},
@@ -151,4 +151,4 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   out.give(std::move(calibration));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

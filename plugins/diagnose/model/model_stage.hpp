@@ -16,7 +16,7 @@
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "plugins/diagnose/model/diagnosis.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage diagnose.model: identifies terms that the sensor model lacks, and extends the calibration by them.
 class DiagnoseModelStage final : public Stage {
@@ -28,12 +28,12 @@ class DiagnoseModelStage final : public Stage {
  private:
   DiagnosisSettings settings_;
   std::optional<std::filesystem::path> folder_;
-  double noise_ = SurfelSettings{}.noise;
-  OrientedPlate oriented_;
-  MeasurementBuffer collected_;
+  double noise_ = quality::SurfelSettings{}.noise;
+  data::OrientedPlate oriented_;
+  estimate::MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> start_;
   std::map<std::string, ClockMap> clocks_;  // by device
   Findings all_;                            // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

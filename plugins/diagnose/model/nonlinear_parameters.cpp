@@ -7,7 +7,7 @@
 
 #include "plugins/diagnose/model/conditional_score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Score test of each form of one candidate, given the other candidates.
@@ -96,4 +96,4 @@ Eigen::MatrixXd form_covariance(const std::vector<Candidate::OtherForm>& others,
   return squares / likelihoods;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

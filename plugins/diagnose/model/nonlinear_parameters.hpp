@@ -6,7 +6,7 @@
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Refines the forms of the candidates (nonlinear parameters such as a period or an instant) by a shrinking
 /// grid search, each jointly with all other candidates. Candidates that the model already has keep their
@@ -28,4 +28,4 @@ std::vector<Candidate> refine_nonlinear(std::vector<Candidate> chosen, const Sen
 /// evaluated
 Eigen::MatrixXd form_covariance(const std::vector<Candidate::OtherForm>& others, double sharing);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include <crisp/sensor_model.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Results that depend on a sensor model alone, each computed once.
 template <class Result>
@@ -30,4 +30,4 @@ class PerModel {
   std::map<Key, Result> results_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

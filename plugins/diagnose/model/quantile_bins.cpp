@@ -5,7 +5,7 @@
 #include <numeric>
 #include <span>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kBins = 12;
@@ -57,4 +57,4 @@ QuantileBins quantile_bins(const std::vector<std::uint32_t>& members, const std:
   return layout;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include "plugins/diagnose/model/residual_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// The bins of one profile with their residuals.
 struct QuantileBins {
@@ -25,4 +25,4 @@ struct QuantileBins {
 QuantileBins quantile_bins(const std::vector<std::uint32_t>& members, const std::vector<double>& values,
                            const std::function<std::size_t(double value)>& recording);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Counts of one laser summed over all simulations.
@@ -24,7 +24,7 @@ double rms_of(const NoiseCounts& counts) {
 }
 
 /// Density that a single residual adds to a bin.
-double share_of_one(const Histogram& bins) { return 1 / (std::max(1.0, bins.all) * bins.width); }
+double share_of_one(const statistics::Histogram& bins) { return 1 / (std::max(1.0, bins.all) * bins.width); }
 
 }  // namespace
 
@@ -46,7 +46,7 @@ std::vector<Distribution> distributions(const std::vector<NoiseCounts>& measured
                                         const std::vector<std::vector<NoiseCounts>>& simulated) {
   std::vector<Distribution> all;
   for (std::size_t laser = 0; laser < measured.size(); ++laser) {
-    const Histogram& own = measured[laser].bins;
+    const statistics::Histogram& own = measured[laser].bins;
     if (own.all == 0) continue;
     const NoiseCounts expected = together(simulated, laser);
     Distribution one{.laser = laser,
@@ -65,4 +65,4 @@ std::vector<Distribution> distributions(const std::vector<NoiseCounts>& measured
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 #include "pipeline/statistics/histogram.hpp"
 #include "plugins/diagnose/model/residuals.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Histogram density of one laser's standardized residuals, measured and simulated.
 struct Distribution {
@@ -26,7 +26,7 @@ struct Distribution {
 
 /// Histogram of one laser's standardized residuals.
 struct NoiseCounts {
-  Histogram bins = {-6, 6, 48};
+  statistics::Histogram bins = {-6, 6, 48};
   double squares = 0;  ///< sum of squares
 };
 
@@ -43,4 +43,4 @@ std::vector<NoiseCounts> counts_of(const WeightedResiduals& values, const Residu
 std::vector<Distribution> distributions(const std::vector<NoiseCounts>& measured,
                                         const std::vector<std::vector<NoiseCounts>>& simulated);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

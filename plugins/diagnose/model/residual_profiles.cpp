@@ -20,7 +20,7 @@
 #include "plugins/diagnose/model/quantile_bins.hpp"
 #include "plugins/diagnose/model/residuals.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kSimulations = 199;
@@ -82,7 +82,7 @@ std::vector<QuantileBins> layouts(const SurfaceObservations& observations, const
   std::map<std::size_t, std::vector<std::uint32_t>> of_laser;
   for (std::uint32_t k = 0; k < residuals.beam.size(); ++k)
     of_laser[beams.laser[residuals.beam[k]]].push_back(k);
-  const RecordingNumbers recordings(*observations.sample().plate);
+  const data::RecordingNumbers recordings(*observations.sample().plate);
   const std::function<std::size_t(double)> recording_of = [&](double time) { return recordings.of(time); };
   const std::function<std::size_t(double)> alike = [](double) { return std::size_t{0}; };
   std::vector<QuantileBins> all;
@@ -122,7 +122,7 @@ std::vector<double> errors_of(const SimulatedMeans& means) {
 /// @param noise  of each laser, relative to the noise assumed by the surfels
 std::vector<double> sizes_of(const std::vector<double>& noise, const Residuals& residuals,
                              const Measurements& beams) {
-  std::vector<Mean> squares(noise.size());
+  std::vector<statistics::Mean> squares(noise.size());
   for (std::size_t k = 0; k < residuals.size(); ++k)
     squares[beams.laser[residuals.beam[k]]].add(residuals.reported[k] * residuals.reported[k], 1);
   std::vector<double> sizes;
@@ -144,7 +144,7 @@ std::map<std::string, double> ProfileComparison::unexplained(std::optional<std::
 }
 
 ProfileComparison compare_with_simulation(const SurfaceObservations& observations,
-                                          const SurfelSettings& settings, std::uint64_t seed) {
+                                          const quality::SurfelSettings& settings, std::uint64_t seed) {
   const Residuals residuals = residuals_in(observations, settings);
   const Measurements& beams = observations.sample().beams;
   ProfileComparison result;
@@ -157,7 +157,7 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
   std::vector<SimulatedMeans> means(all.size(), SimulatedMeans(kSimulations));
   std::vector<double> squares(kSimulations);
   std::vector<std::vector<NoiseCounts>> counts(kSimulations);
-  for_each_index(kSimulations, [&](std::size_t s) {
+  quality::for_each_index(kSimulations, [&](std::size_t s) {
     const WeightedResiduals made = simulated(residuals, noise, seed + s);
     squares[s] = shared_square(residuals, made, beams);
     counts[s] = counts_of(made, residuals, noise, beams);
@@ -172,7 +172,7 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
     for (std::size_t s = 0; s < kSimulations; ++s)
       least[s] = std::min(least[s], profile_p_value(all[p], means[p][s], errors));
   }
-  const double tests = effective_number_of_tests(least);
+  const double tests = statistics::effective_number_of_tests(least);
   for (std::size_t p = 0; p < all.size(); ++p) {
     const auto own = means_in(all[p], residuals.measured);
     const auto errors = errors_of(means[p]);
@@ -183,7 +183,7 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
       profile.bins[b].simulated = means[p].front()[b];
     }
     profile.rms = systematic_rms(own, errors);
-    profile.p_value = sidak_p_value(tests, profile_p_value(all[p], own, errors));
+    profile.p_value = statistics::sidak_p_value(tests, profile_p_value(all[p], own, errors));
     result.p_value = std::min(result.p_value, profile.p_value);
     result.profiles.push_back(std::move(profile));
   }
@@ -191,4 +191,4 @@ ProfileComparison compare_with_simulation(const SurfaceObservations& observation
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "plugins/diagnose/model/residual_histogram.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stands for all lasers in place of one.
 inline constexpr std::size_t kAllLasers = ~std::size_t{0};
@@ -57,6 +57,6 @@ struct ProfileComparison {
 /// scene, each beam on its own surface, with its laser's estimated noise. Repeated simulations give the
 /// distribution of each profile under the null hypothesis.
 ProfileComparison compare_with_simulation(const SurfaceObservations& observations,
-                                          const SurfelSettings& settings, std::uint64_t seed);
+                                          const quality::SurfelSettings& settings, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr const char* kLeavesMore =
@@ -44,4 +44,4 @@ bool reject_if_residual_exceeds(std::vector<Hypothesis>& hypotheses, const Profi
   return has_rejected;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

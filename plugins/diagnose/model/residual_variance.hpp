@@ -6,7 +6,7 @@
 #include "plugins/diagnose/model/hypothesis.hpp"
 #include "plugins/diagnose/model/residual_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Rejects accepted causes that explain less mean square of the residuals, over all beams, than the extended
 /// model leaves unexplained. Where a large systematic residual has no fitting candidate, the most similar
@@ -22,4 +22,4 @@ namespace crisp {
 bool reject_if_residual_exceeds(std::vector<Hypothesis>& hypotheses, const ProfileComparison& left,
                                 double noise);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

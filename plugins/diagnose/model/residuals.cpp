@@ -10,14 +10,14 @@
 #include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Orthonormal basis of the plane's column space in a surface's weighted residuals.
-Eigen::MatrixX3d span_of_plane(const std::vector<SurfelResidual>& residuals) {
+Eigen::MatrixX3d span_of_plane(const std::vector<quality::SurfelResidual>& residuals) {
   Eigen::MatrixX3d basis(static_cast<Eigen::Index>(residuals.size()), 3);
   for (std::size_t k = 0; k < residuals.size(); ++k) {
-    const SurfelResidual& r = residuals[k];
+    const quality::SurfelResidual& r = residuals[k];
     basis.row(static_cast<Eigen::Index>(k)) =
         Eigen::RowVector3d(1, r.u, r.v) * (std::sqrt(r.weight) / std::max(0.05, std::abs(r.incidence)));
   }
@@ -32,22 +32,23 @@ template <class Pair>
 void for_each_neighbours(const Residuals& residuals, const Measurements& beams, Pair pair) {
   for (std::size_t s = 0; s + 1 < residuals.first.size(); ++s) {
     for (std::size_t k = residuals.first[s] + 1; k < residuals.first[s + 1]; ++k) {
-      if (are_neighbours(beams, residuals.beam[k - 1], residuals.beam[k])) pair(k);
+      if (estimate::are_neighbours(beams, residuals.beam[k - 1], residuals.beam[k])) pair(k);
     }
   }
 }
 
 }  // namespace
 
-Residuals residuals_in(const SurfaceObservations& observations, const SurfelSettings& settings) {
+Residuals residuals_in(const SurfaceObservations& observations, const quality::SurfelSettings& settings) {
   Residuals all;
-  for (const Surfel& surfel : observations.surfels().surfels) {
-    std::vector<SurfelResidual> counting;
+  for (const quality::Surfel& surfel : observations.surfels().surfels) {
+    std::vector<quality::SurfelResidual> counting;
     const auto members = observations.surfels().beams_of(surfel);
-    const auto residuals = residuals_of(surfel, observations.surfels(), observations.beams(), settings);
+    const auto residuals =
+        quality::residuals_of(surfel, observations.surfels(), observations.beams(), settings);
     all.first.push_back(all.beam.size());
     for (std::size_t k = 0; k < residuals.size(); ++k) {
-      const SurfelResidual& r = residuals[k];
+      const quality::SurfelResidual& r = residuals[k];
       if (r.weight == 0) continue;
       counting.push_back(r);
       all.beam.push_back(members[k]);
@@ -80,7 +81,7 @@ std::vector<double> noise_of(const Residuals& residuals, const Measurements& bea
   std::vector<double> noise;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     auto& sizes = pairs[laser].size() > kFewPairs ? pairs[laser] : alone[laser];
-    noise.push_back(sizes.empty() ? 0 : kMadToSigma * median_in_place(sizes));
+    noise.push_back(sizes.empty() ? 0 : statistics::kMadToSigma * statistics::median_in_place(sizes));
   }
   return noise;
 }
@@ -98,7 +99,7 @@ double shared_square(const Residuals& residuals, const WeightedResiduals& values
 
 WeightedResiduals simulated(const Residuals& residuals, const std::vector<double>& noise,
                             std::uint64_t seed) {
-  RandomStream random(seed, "residuals");
+  statistics::RandomStream random(seed, "residuals");
   const std::size_t n = residuals.size();
   WeightedResiduals made{.value = std::vector<double>(n), .weight = std::vector<double>(n)};
   for (std::size_t k = 0; k < n; ++k) made.value[k] = noise[k] * residuals.reported[k] * random.normal();
@@ -114,9 +115,9 @@ WeightedResiduals simulated(const Residuals& residuals, const std::vector<double
   }
   for (std::size_t k = 0; k < n; ++k) {
     const double end = residuals.end[k] * std::max(1.0, noise[k]);
-    made.weight[k] = biweight(made.value[k] / end);
+    made.weight[k] = statistics::biweight(made.value[k] / end);
   }
   return made;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

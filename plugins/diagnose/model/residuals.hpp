@@ -9,7 +9,7 @@
 #include "pipeline/quality/surfels.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Residuals of one recording's ranges from the surfaces, with robust weights.
 struct WeightedResiduals {
@@ -31,7 +31,7 @@ struct Residuals {
 };
 
 /// Residuals at the model of `observations`.
-Residuals residuals_in(const SurfaceObservations& observations, const SurfelSettings& settings);
+Residuals residuals_in(const SurfaceObservations& observations, const quality::SurfelSettings& settings);
 
 /// Range noise of each laser relative to the noise assumed by the surfels, from the median absolute
 /// difference of consecutive residuals of one scan on one surface. Differences between lasers and slow
@@ -50,4 +50,4 @@ double shared_square(const Residuals& residuals, const WeightedResiduals& values
 /// @param noise  of each residual, relative to the noise assumed by the surfels
 WeightedResiduals simulated(const Residuals& residuals, const std::vector<double>& noise, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,7 +10,7 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Observable directions of the parameters, scaled to unit effect.
@@ -18,7 +18,8 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
   constexpr double kNothing = 1e-3;  // share of a parameter's own squared effect
   const Eigen::VectorXd scale =
       squares.unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
-  const SymmetricEigen eigen = eigendecomposition(scale.asDiagonal() * matrix * scale.asDiagonal());
+  const statistics::SymmetricEigen eigen =
+      statistics::eigendecomposition(scale.asDiagonal() * matrix * scale.asDiagonal());
   const auto hidden = (eigen.values.array() <= kNothing).count();
   const Eigen::Index seen = matrix.cols() - hidden;
   return scale.asDiagonal() * eigen.vectors.rightCols(seen) *
@@ -75,7 +76,7 @@ std::optional<double> by_rao_and_scott(const Eigen::VectorXd& along, double n, c
 
 /// Statistics of the division into blocks that gives the largest p-value. A division with fewer blocks than
 /// steps tests nothing.
-StepSpread widest(const NormalEquations& equations, const std::vector<std::size_t>& of,
+StepSpread widest(const quality::NormalEquations& equations, const std::vector<std::size_t>& of,
                   const Eigen::MatrixXd& directions, const Eigen::VectorXd& steps, double gain) {
   const auto p = static_cast<double>(steps.size());
   if (steps.size() == 0) return {.covariance = Eigen::MatrixXd(0, 0), .wald = 0};
@@ -83,7 +84,7 @@ StepSpread widest(const NormalEquations& equations, const std::vector<std::size_
   for (std::size_t division = 0; division < equations.block_scores.size(); ++division) {
     const Eigen::MatrixXd block_scores = equations.scores_along(division, of, directions);
     const Eigen::MatrixXd covariance = block_scores * block_scores.transpose();
-    const Eigen::VectorXd solved = minimum_norm_least_squares(covariance, steps);
+    const Eigen::VectorXd solved = statistics::minimum_norm_least_squares(covariance, steps);
     const auto first = by_hotelling(block_scores, steps, solved);
     const Eigen::VectorXd along = block_scores.transpose() * steps.normalized();
     const double blocks = std::min(alike(along), static_cast<double>(along.size()));
@@ -110,7 +111,7 @@ double ScoreTest::design_effect() const {
   return ratio > kChance ? ratio : 1;
 }
 
-ScoreTest score_test(const NormalEquations& equations, const std::vector<std::size_t>& of) {
+ScoreTest score_test(const quality::NormalEquations& equations, const std::vector<std::size_t>& of) {
   const Eigen::MatrixXd matrix = equations.matrix(of, of);
   const Eigen::VectorXd squares = equations.squares(of);
   const Eigen::MatrixXd seen = seen_directions(matrix, squares);
@@ -135,4 +136,4 @@ ScoreTest score_test(const NormalEquations& equations, const std::vector<std::si
   return test;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

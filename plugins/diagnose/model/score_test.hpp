@@ -7,7 +7,7 @@
 
 #include "pipeline/quality/surfel_equations.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Score test of p parameters that could be added to a model (Rao 1948), without fitting them.
 struct ScoreTest {
@@ -38,6 +38,6 @@ struct ScoreTest {
 ///
 /// @param equations  with divisions into blocks, after eliminating the jointly estimated parameters
 /// @param of         columns of the tested parameters
-ScoreTest score_test(const NormalEquations& equations, const std::vector<std::size_t>& of);
+ScoreTest score_test(const quality::NormalEquations& equations, const std::vector<std::size_t>& of);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/dense_solvers.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr const char* kMayBeTheScenes =
@@ -28,7 +28,7 @@ struct Estimates {
   bool has_held = false;           ///< whether a size is held at a value that is not neutral
 };
 
-Estimates estimates_of(const Candidate& candidate, const Outcome& outcome, const TermInfo& info) {
+Estimates estimates_of(const Candidate& candidate, const estimate::Outcome& outcome, const TermInfo& info) {
   Estimates estimates;
   const auto places = parameter_indices(candidate, outcome);
   for (std::size_t p = 0; p < places.size(); ++p) {
@@ -51,7 +51,7 @@ Estimates estimates_of(const Candidate& candidate, const Outcome& outcome, const
 /// was estimated. The form is held at its estimate, since a neutral term has none, and counts as a parameter.
 ///
 /// @param p_value  largest that passes
-AcceptanceTest wald_test(const Estimates& estimates, const Outcome& outcome, double p_value) {
+AcceptanceTest wald_test(const Estimates& estimates, const estimate::Outcome& outcome, double p_value) {
   AcceptanceTest test{.name = "Wald test", .threshold = p_value, .p_value = 0, .passed = true};
   const auto& [at, form, off, has_held] = estimates;
   if (at.empty()) return test;
@@ -59,11 +59,11 @@ AcceptanceTest wald_test(const Estimates& estimates, const Outcome& outcome, dou
   if (!form.empty()) {
     const Eigen::MatrixXd with_form = outcome.covariance(form, at);
     const Eigen::MatrixXd of_form = outcome.covariance(form, form);
-    covariance -= with_form.transpose() * solve_positive_definite(of_form, with_form);
+    covariance -= with_form.transpose() * statistics::solve_positive_definite(of_form, with_form);
   }
   const Eigen::VectorXd change =
       Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size()));
-  test.statistic = change.dot(solve_positive_definite(covariance, change));
+  test.statistic = change.dot(statistics::solve_positive_definite(covariance, change));
   const boost::math::chi_squared null(static_cast<double>(off.size() + form.size()));
   test.p_value = test.statistic > 0 ? cdf(complement(null, test.statistic)) : 1;
   test.passed = test.p_value < p_value;
@@ -83,7 +83,7 @@ AcceptanceTest score_test_of(const Hypothesis& hypothesis, double p_value) {
 }  // namespace
 
 std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& candidate,
-                                                           const Outcome& outcome) {
+                                                           const estimate::Outcome& outcome) {
   std::vector<std::optional<Eigen::Index>> places(candidate.term.parameters.size());
   for (std::size_t p = 0; p < places.size(); ++p) {
     const std::string name = name_in_model(candidate, p);
@@ -114,7 +114,7 @@ void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses) {
   }
 }
 
-bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const Outcome& outcome,
+bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
                           const TermRegistry& terms, double p_value) {
   bool has_rejected = false;
   for (Hypothesis& one : hypotheses) {
@@ -128,4 +128,4 @@ bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const Outcome& ou
   return has_rejected;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

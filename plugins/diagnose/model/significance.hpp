@@ -7,12 +7,12 @@
 #include "pipeline/estimate/outcome.hpp"
 #include "plugins/diagnose/model/hypothesis.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Index of each parameter of a candidate's term in the outcome's covariance; empty for parameters that were
 /// not estimated.
 std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& candidate,
-                                                           const Outcome& outcome);
+                                                           const estimate::Outcome& outcome);
 
 /// Rejects small causes that several lasers share: deviations of real surfaces from planes affect all lasers
 /// alike, and many causes absorb a part of them.
@@ -24,7 +24,7 @@ void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses);
 ///
 /// @param p_value  significance level
 /// @return         whether a term was rejected; if so, refit without it and call this again
-bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const Outcome& outcome,
+bool reject_insignificant(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
                           const TermRegistry& terms, double p_value);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

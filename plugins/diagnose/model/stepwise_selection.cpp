@@ -11,7 +11,7 @@
 
 #include "plugins/diagnose/model/conditional_score_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Groups causes that lasers of one make may share: the same cause of each laser, in one form unless the
@@ -55,7 +55,7 @@ class Chooser {
   static constexpr double kSmall = 0.05;  ///< share of `rough` below which a gain waits
 
  public:
-  Chooser(const CandidateJacobian& jacobian, const NormalEquations& equations,
+  Chooser(const CandidateJacobian& jacobian, const quality::NormalEquations& equations,
           const SelectionSettings& settings, const std::set<std::string>& rejected, std::size_t tests)
       : jacobian_(jacobian),
         equations_(equations),
@@ -130,8 +130,8 @@ class Chooser {
   /// The best cause that all lasers share, if it is needed and no part of it is selected.
   ///
   /// @param left  normal equations after eliminate_base()
-  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken, const NormalEquations& left,
-                                      double rough) const {
+  std::optional<Together> best_of_all(const std::vector<std::size_t>& taken,
+                                      const quality::NormalEquations& left, double rough) const {
     const auto& candidates = jacobian_.candidates();
     std::optional<Together> best;
     for (const auto& members : of_all_) {
@@ -152,7 +152,7 @@ class Chooser {
   /// Next selection: a cause shared by all lasers only if it gains much more than any single candidate.
   std::optional<Together> next(const std::vector<std::size_t>& taken, double rough) const {
     constexpr double kMore = 1.5;
-    const NormalEquations left = eliminate_base(taken, jacobian_, equations_);
+    const quality::NormalEquations left = eliminate_base(taken, jacobian_, equations_);
     auto tests = score_tests(left, taken, jacobian_);
     auto one = best(tests, rough);
     while (one && is_part_of_rejected(*one, tests, taken)) {
@@ -256,7 +256,7 @@ class Chooser {
   }
 
   const CandidateJacobian& jacobian_;
-  const NormalEquations& equations_;
+  const quality::NormalEquations& equations_;
   Competition competition_;
   const SelectionSettings& settings_;
   const std::set<std::string>& rejected_;
@@ -266,7 +266,8 @@ class Chooser {
 
 }  // namespace
 
-std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const NormalEquations& equations,
+std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian,
+                                      const quality::NormalEquations& equations,
                                       const SelectionSettings& settings,
                                       const std::set<std::string>& rejected, std::size_t tests) {
   const Chooser chooser(jacobian, equations, settings, rejected, tests);
@@ -292,4 +293,4 @@ std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const N
   return choices;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 
 #include "plugins/diagnose/model/competing_causes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Thresholds of the stepwise selection.
 struct SelectionSettings {
@@ -28,8 +28,9 @@ struct SelectionSettings {
 /// @param rejected   names of candidates that are excluded
 /// @param tests      number of different candidates tested, where the Jacobian has only some of them
 /// @return  in the order of selection
-std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian, const NormalEquations& equations,
+std::vector<SelectedCandidate> choose(const CandidateJacobian& jacobian,
+                                      const quality::NormalEquations& equations,
                                       const SelectionSettings& settings,
                                       const std::set<std::string>& rejected = {}, std::size_t tests = 0);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

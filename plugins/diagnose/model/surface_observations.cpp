@@ -16,13 +16,15 @@
 #include "pipeline/quality/surfel_residuals.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using quality::Surfels;
 
 /// Only the beams that count: what was cut off a surface does not return when the others are weighed anew.
 Surfels counting(const Surfels& surfels) {
   Surfels some;
-  for (const Surfel& surfel : surfels.surfels) {
+  for (const quality::Surfel& surfel : surfels.surfels) {
     std::vector<std::uint32_t> beams;
     for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
       if (surfels.weights[k] > 0) beams.push_back(surfels.members[k]);
@@ -32,24 +34,24 @@ Surfels counting(const Surfels& surfels) {
   return some;
 }
 
-Surfels found_by(SurfacesOf of, const BeamsView& beams, const SurfelSettings& settings) {
+Surfels found_by(SurfacesOf of, const quality::BeamsView& beams, const quality::SurfelSettings& settings) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  if (of == SurfacesOf::kSearch) return patches(settings, 1)->update(beams, kFar);
-  Surfels completed = counting(patches(settings, 0)->update(beams, kFar));
-  refine_all(completed, beams, settings);
+  if (of == SurfacesOf::kSearch) return estimate::patches(settings, 1)->update(beams, kFar);
+  Surfels completed = counting(estimate::patches(settings, 0)->update(beams, kFar));
+  quality::refine_all(completed, beams, settings);
   return completed;
 }
 
-Surfels surfaces(SurfacesOf of, const BeamsView& beams, const SurfelSettings& settings) {
+Surfels surfaces(SurfacesOf of, const quality::BeamsView& beams, const quality::SurfelSettings& settings) {
   const Surfels found = found_by(of, beams, settings);
   if (found.surfels.empty()) {
     throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
                 "reduce `min_cell`, or record in a place with walls");
   }
-  return kept(found, static_surfaces(found, beams, settings.noise));
+  return estimate::kept(found, estimate::static_surfaces(found, beams, settings.noise));
 }
 
-bool are_elsewhere(const BeamsView& beams, const BeamsView& before) {
+bool are_elsewhere(const quality::BeamsView& beams, const quality::BeamsView& before) {
   return !std::ranges::equal(beams.points.x, before.points.x) ||
          !std::ranges::equal(beams.points.y, before.points.y) ||
          !std::ranges::equal(beams.points.z, before.points.z);
@@ -58,10 +60,10 @@ bool are_elsewhere(const BeamsView& beams, const BeamsView& before) {
 /// Systematic subsample of each surface's beams, with at most about `most` in total.
 Surfels thinned(const Surfels& surfels, std::size_t most) {
   std::size_t all = 0;
-  for (const Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
+  for (const quality::Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
   const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
   Surfels some;
-  for (Surfel surfel : surfels.surfels) {
+  for (quality::Surfel surfel : surfels.surfels) {
     const auto begin = static_cast<std::uint32_t>(some.members.size());
     for (std::size_t k = surfel.begin; k < surfel.end; k += stride) {
       some.members.push_back(surfels.members[k]);
@@ -76,42 +78,44 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 }  // namespace
 
-SurfaceObservations::SurfaceObservations(const SensorModel& model, Sample sample,
-                                         const SurfelSettings& settings, std::size_t most,
+SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sample sample,
+                                         const quality::SurfelSettings& settings, std::size_t most,
                                          std::function<bool()> interrupted, SurfacesOf of)
     : sample_(std::move(sample)),
       placed_(model, sample_),
       settings_(settings),
       interrupted_(std::move(interrupted)) {
   all_ = surfaces(of, placed_.view(), settings_);
-  sample_.beams.cos_incidence = incidences(all_, placed_.view());
+  sample_.beams.cos_incidence = estimate::incidences(all_, placed_.view());
   // Terms of the incidence angle move beams, mostly those of grazing incidence, and thereby the surfaces.
-  if (PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
+  if (estimate::PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
     all_ = surfaces(of, moved.view(), settings_);
-    sample_.beams.cos_incidence = incidences(all_, moved.view());
-    placed_ = PlacedBeams(model, sample_);
+    sample_.beams.cos_incidence = estimate::incidences(all_, moved.view());
+    placed_ = estimate::PlacedBeams(model, sample_);
   }
-  noise_ = relative_noise(all_, placed_.view(), sample_.beams, settings_);
-  if (!noise_.empty()) refine_all(all_, beams(), settings_);
+  noise_ = estimate::relative_noise(all_, placed_.view(), sample_.beams, settings_);
+  if (!noise_.empty()) quality::refine_all(all_, beams(), settings_);
   surfels_ = thinned(all_, most);
   constexpr double kNearlyAll = 0.99;
   auto ranges = sample_.beams.range;
   const auto [first, last] = std::ranges::minmax(sample_.beams.time);
-  const auto recordings = recordings_of(*sample_.plate);
+  const auto recordings = data::recordings_of(*sample_.plate);
   coverage_ = {.first = first,
                .last = last,
-               .farthest = quantile_in_place(ranges, kNearlyAll),
+               .farthest = statistics::quantile_in_place(ranges, kNearlyAll),
                .one_begin = recordings.size() < 2,
                .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
-  shared_ = shared_errors(sample_.beams, all_, beams());
+  shared_ = estimate::shared_errors(sample_.beams, all_, beams());
 }
 
-NormalEquations SurfaceObservations::equations(const CandidateJacobian& jacobian, std::size_t most) const {
+quality::NormalEquations SurfaceObservations::equations(const CandidateJacobian& jacobian,
+                                                        std::size_t most) const {
   const auto rows = [this, all = jacobian.rows(sample_)](const auto&... of_surfel) {
     if (interrupted_ && interrupted_()) throw Interrupted();
     all(of_surfel...);
   };
-  return normal_equations(thinned(all_, most), beams(), jacobian.parameters(), rows, settings_, shared_);
+  return quality::normal_equations(thinned(all_, most), beams(), jacobian.parameters(), rows, settings_,
+                                   shared_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "pipeline/estimate/placed_beams.hpp"
 #include "plugins/diagnose/model/candidate_jacobian.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Which surfaces beams are compared with: those that a refinement ends with, for the sensor model; or those
 /// that it begins with, which neither grow into edges nor end before them, for what edges do to ranges.
@@ -22,14 +22,14 @@ class SurfaceObservations {
   /// @param sample  all beams, covered by the encoder readings; their incidence angles are set here
   /// @param most    number of beams on surfels(), evenly subsampled
   /// @param interrupted  cancellation query of equations(), called from several threads
-  SurfaceObservations(const SensorModel& model, Sample sample, const SurfelSettings& settings,
-                      std::size_t most, std::function<bool()> interrupted = {},
-                      SurfacesOf of = SurfacesOf::kRefinement);
+  SurfaceObservations(const SensorModel& model, estimate::Sample sample,
+                      const quality::SurfelSettings& settings, std::size_t most,
+                      std::function<bool()> interrupted = {}, SurfacesOf of = SurfacesOf::kRefinement);
 
-  const Sample& sample() const { return sample_; }
-  const Surfels& surfels() const { return surfels_; }  ///< with `most` beams
-  BeamsView beams() const { return placed_.view(noise_); }
-  const PlacedBeams& placed() const { return placed_; }
+  const estimate::Sample& sample() const { return sample_; }
+  const quality::Surfels& surfels() const { return surfels_; }  ///< with `most` beams
+  quality::BeamsView beams() const { return placed_.view(noise_); }
+  const estimate::PlacedBeams& placed() const { return placed_; }
   Coverage coverage() const { return coverage_; }
 
   /// Normal equations at the model, in the Jacobian's columns, with divisions into blocks of correlated
@@ -37,18 +37,18 @@ class SurfaceObservations {
   ///
   /// @param most  number of beams used, evenly subsampled
   /// @throws Interrupted
-  NormalEquations equations(const CandidateJacobian& jacobian, std::size_t most) const;
+  quality::NormalEquations equations(const CandidateJacobian& jacobian, std::size_t most) const;
 
  private:
-  Sample sample_;
-  PlacedBeams placed_;
+  estimate::Sample sample_;
+  estimate::PlacedBeams placed_;
   std::vector<float> noise_;  ///< relative noise of the beams; empty: equal
-  SurfelSettings settings_;
-  Surfels all_;      ///< with all beams
-  Surfels surfels_;  ///< with `most` of them
+  quality::SurfelSettings settings_;
+  quality::Surfels all_;      ///< with all beams
+  quality::Surfels surfels_;  ///< with `most` of them
   Coverage coverage_;
-  std::vector<Division> shared_;
+  std::vector<quality::Division> shared_;
   std::function<bool()> interrupted_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

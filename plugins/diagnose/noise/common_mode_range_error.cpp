@@ -14,7 +14,7 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 #include "plugins/diagnose/noise/permutation_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::array kWarmUps = {0.03, 0.1, 0.3,
@@ -86,9 +86,9 @@ MeansModel with_bic(Eigen::MatrixXd base, const Eigen::MatrixXd* columns, bool i
                     const Eigen::VectorXd& values) {
   constexpr double kOfItsOwn = 2;  // parameters of a change: size and shape
   auto parameters = static_cast<double>(base.cols());
-  double squares = off_base(base, values).squaredNorm();
+  double squares = clocks::off_base(base, values).squaredNorm();
   if (columns != nullptr) {
-    squares -= std::pow(best_in_series(base, *columns, values).product, 2);
+    squares -= std::pow(clocks::best_in_series(base, *columns, values).product, 2);
     parameters += kOfItsOwn;
   }
   return {std::move(base), columns, is_step, bic_of_series(squares, values.size(), parameters)};
@@ -110,9 +110,9 @@ std::vector<MeansModel> means_models(const Eigen::ArrayXd& time, const Shapes& s
 /// Permutation test of the cosines, given the other regressors.
 double p_of_wander(const Eigen::MatrixXd& rest, const Eigen::MatrixXd& cosines,
                    const Eigen::VectorXd& values) {
-  const Eigen::MatrixXd given_rest = off_base(rest, cosines);
-  const Eigen::VectorXd without = off_base(rest, values);
-  const double left = off_base(given_rest, without).squaredNorm();
+  const Eigen::MatrixXd given_rest = clocks::off_base(rest, cosines);
+  const Eigen::VectorXd without = clocks::off_base(rest, values);
+  const double left = clocks::off_base(given_rest, without).squaredNorm();
   const auto own = static_cast<double>(cosines.cols());
   const auto degrees_of_freedom = static_cast<double>(values.size() - rest.cols() - cosines.cols());
   if (!(left > 0)) return 1;
@@ -138,7 +138,7 @@ CommonModeChange change_of(const MeansModel& model, const PermutationTest& test,
                           .log10_bayes_factor = (next_likely - model.bic) / 2 / std::numbers::ln10,
                           .gain = named(test.gain)};
   if (model.is_step) {
-    const auto first = static_cast<std::size_t>(before_step(model.columns->col(test.column)));
+    const auto first = static_cast<std::size_t>(clocks::before_step(model.columns->col(test.column)));
     change.shape = seconds[first];
     // Scans may arrive in bursts, at equal receipt times: the mean interval is the resolution of a step.
     const double between = (seconds.back() - seconds.front()) / static_cast<double>(seconds.size() - 1);
@@ -154,7 +154,7 @@ CommonModeWander wander_of(const Eigen::MatrixXd& cosines, const Eigen::MatrixXd
                            const Eigen::VectorXd& values, double tests, std::uint64_t seed) {
   Eigen::MatrixXd design(values.size(), cosines.cols() + rest.cols());
   design << cosines, rest;
-  const Eigen::VectorXd fit = least_squares(design, values);
+  const Eigen::VectorXd fit = statistics::least_squares(design, values);
   const Eigen::ArrayXd wander = cosines * fit.head(cosines.cols());
   return {.rms = std::sqrt((wander - wander.mean()).square().mean()),
           .p_value = std::min(1.0, tests * p_of_wander(rest, cosines, values)),
@@ -196,7 +196,7 @@ CommonModeError fit_model(const MeansModel& model, double next_likely, const Eig
     design.conservativeResize(Eigen::NoChange, rest.cols() + cosines.cols());
     design.rightCols(cosines.cols()) = cosines;
   }
-  found.curve = values - off_base(design, values);
+  found.curve = values - clocks::off_base(design, values);
   found.curve.array() -= found.curve.mean();
   return found;
 }
@@ -220,7 +220,7 @@ CommonModeError common_mode_error(const RangeErrors& errors, const std::vector<d
   if (n < kMin || !(seconds.back() > seconds.front())) return {};
   const Eigen::VectorXd values = means(errors, seconds.size());
   const Eigen::ArrayXd time = Eigen::Map<const Eigen::ArrayXd>(seconds.data(), n) - seconds.front();
-  const Shapes shapes{.jumps = steps(n, kMargin), .creeping = creeping(time)};
+  const Shapes shapes{.jumps = clocks::steps(n, kMargin), .creeping = creeping(time)};
   const auto all = means_models(time, shapes, values);
   for (const bool with_cause : {true, false}) {
     const MeansModel& model = lowest_bic(all, with_cause);
@@ -232,11 +232,11 @@ CommonModeError common_mode_error(const RangeErrors& errors, const std::vector<d
   return {};
 }
 
-Plot common_plot(const std::string& name, const CommonModeError& found, const RangeErrors& errors,
-                 const std::vector<double>& seconds) {
+plot::Plot common_plot(const std::string& name, const CommonModeError& found, const RangeErrors& errors,
+                       const std::vector<double>& seconds) {
   const Eigen::VectorXd values = means(errors, seconds.size());
-  PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
-  PlotSeries curve{.name = "fitted", .x = {}, .y = {}};
+  plot::PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
+  plot::PlotSeries curve{.name = "fitted", .x = {}, .y = {}};
   for (std::size_t scan = 0; scan < seconds.size(); ++scan) {
     const auto at = static_cast<Eigen::Index>(scan);
     measured.x.push_back(seconds[scan]);
@@ -257,4 +257,4 @@ void subtract_curve(const Eigen::VectorXd& curve, RangeErrors& errors) {
   errors.centre_beams();
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -12,7 +12,7 @@
 #include "pipeline/plot/plot.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Common-mode change of a stationary laser's ranges with a known cause: a step or a warm-up drift.
 struct CommonModeChange {
@@ -53,10 +53,10 @@ CommonModeError common_mode_error(const RangeErrors& errors, const std::vector<d
                                   std::size_t tests, std::uint64_t seed);
 
 /// Plot of each scan's mean error with the fitted curve.
-Plot common_plot(const std::string& name, const CommonModeError& found, const RangeErrors& errors,
-                 const std::vector<double>& seconds);
+plot::Plot common_plot(const std::string& name, const CommonModeError& found, const RangeErrors& errors,
+                       const std::vector<double>& seconds);
 
 /// Subtracts a curve [m], given per scan, from the range errors.
 void subtract_curve(const Eigen::VectorXd& curve, RangeErrors& errors);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Whether the first parameter, the size, exceeds two of its standard errors.
@@ -19,7 +19,7 @@ double added_by(const NoiseComponent& component, const NoiseModel& model, const 
   component.remove(without);
   double added = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const EchoConditions echo = errors.echo(i);
+    const model::EchoConditions echo = errors.echo(i);
     added += model.variance(echo, errors.beam[i]) - without.variance(echo, errors.beam[i]);
   }
   return added / static_cast<double>(errors.size());
@@ -55,4 +55,4 @@ std::string rejection_reason(const Finding& found, const NoiseComponent& compone
   return {};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

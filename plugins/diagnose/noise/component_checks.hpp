@@ -7,7 +7,7 @@
 
 #include "plugins/diagnose/noise/noise_components.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// [m²] Mean product of the errors of consecutive beams in a scan: their common-mode error. 0 without such
 /// pairs.
@@ -22,4 +22,4 @@ double shared_by_neighbours(const RangeErrors& errors, const NoiseModel& model);
 std::string rejection_reason(const Finding& found, const NoiseComponent& component, const NoiseModel& model,
                              const RangeErrors& errors);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

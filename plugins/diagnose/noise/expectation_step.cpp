@@ -6,7 +6,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kRangesAtOnce = 512;     // ranges: their arrays stay in the cache
@@ -49,9 +49,9 @@ struct ExpectationStep::Block {
 
   /// Evaluates the mixture for the ranges of the block.
   void compute(const NoiseModel& model, const RangeErrors& errors,
-               const std::array<std::vector<double>, kVarianceParts>& unit_variances) {
+               const std::array<std::vector<double>, model::kVarianceParts>& unit_variances) {
     deviation.fill(0);
-    for (std::size_t part = 0; part < kVarianceParts; ++part) {
+    for (std::size_t part = 0; part < model::kVarianceParts; ++part) {
       const double square = model.size[part] * model.size[part];
       if (square == 0) continue;
       const double* unit = unit_variances[part].data() + first;
@@ -133,8 +133,8 @@ void ExpectationSums::operator+=(const ExpectationSums& other) {
 ExpectationStep::ExpectationStep(const RangeErrors& errors) : errors_(errors) {
   for (auto& part : unit_variances_) part.resize(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const ByPart units = unit_variances(errors.echo(i));
-    for (std::size_t part = 0; part < kVarianceParts; ++part) unit_variances_[part][i] = units[part];
+    const model::ByPart units = model::unit_variances(errors.echo(i));
+    for (std::size_t part = 0; part < model::kVarianceParts; ++part) unit_variances_[part][i] = units[part];
   }
 }
 
@@ -160,8 +160,8 @@ void ExpectationStep::add(const Block& block, const NoiseModel& model, Expectati
     if (!(expected.weight > 0)) continue;  // underflow: an extreme outlier
     const double relative = block.relative[k];
     const double variance = (block.deviation[k] / relative) * (block.deviation[k] / relative);
-    ByPart units;
-    for (std::size_t part = 0; part < kVarianceParts; ++part) {
+    model::ByPart units;
+    for (std::size_t part = 0; part < model::kVarianceParts; ++part) {
       units[part] = model.parts[part] ? unit_variances_[part][block.first + k] : 0;
     }
     sums.variance.add(units, expected.square / expected.weight, expected.weight / (variance * variance));
@@ -173,12 +173,12 @@ ExpectationSums ExpectationStep::sums(const NoiseModel& model, std::size_t beams
   const auto add_ranges = [&](ExpectationSums& sums, std::size_t begin, std::size_t end) {
     for_each_block(model, begin, end, [&](const Block& block) { add(block, model, sums); });
   };
-  return sum_over_blocks(errors_.size(), kRangesOfTask, ExpectationSums(beams), add_ranges);
+  return quality::sum_over_blocks(errors_.size(), kRangesOfTask, ExpectationSums(beams), add_ranges);
 }
 
 std::vector<double> ExpectationStep::log_densities(const NoiseModel& model) const {
   std::vector<double> all(errors_.size());
-  for_blocks(all.size(), kRangesOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
+  quality::for_blocks(all.size(), kRangesOfTask, [&](std::size_t, std::size_t begin, std::size_t end) {
     for_each_block(model, begin, end, [&](const Block& block) {
       std::copy_n(block.log_density.begin(), block.size,
                   all.begin() + static_cast<std::ptrdiff_t>(block.first));
@@ -187,4 +187,4 @@ std::vector<double> ExpectationStep::log_densities(const NoiseModel& model) cons
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

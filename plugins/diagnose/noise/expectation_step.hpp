@@ -10,7 +10,7 @@
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/noise/normal_mixture.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Sums over all ranges that the maximization step of EM needs.
 struct ExpectationSums {
@@ -22,8 +22,9 @@ struct ExpectationSums {
   double tail = 0;                               ///< expected number of ranges in the tail
   double tail_squares = 0;                       ///< their squares, in units of the deviation
   double separation = 0, separation_weight = 0;  ///< of the least squares that the peaks' separation solves
-  NonNegativeProblem variance{kVarianceParts};   ///< squares, as sums of the parts' unit variances
-  std::vector<double> far, of_beam, squares;     ///< by beam: in the farther peak, all, squares
+  statistics::NonNegativeProblem variance{
+      model::kVarianceParts};                 ///< squares, as sums of the parts' unit variances
+  std::vector<double> far, of_beam, squares;  ///< by beam: in the farther peak, all, squares
 };
 
 /// The E-step of EM for a NoiseModel: which component of the mixture each range came from, for blocks of
@@ -48,7 +49,7 @@ class ExpectationStep {
   void add(const Block& block, const NoiseModel& model, ExpectationSums& sums) const;
 
   const RangeErrors& errors_;
-  std::array<std::vector<double>, kVarianceParts> unit_variances_;  // of each range
+  std::array<std::vector<double>, model::kVarianceParts> unit_variances_;  // of each range
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -18,7 +18,7 @@
 #include "plugins/diagnose/noise/common_mode_range_error.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 using Scores = std::vector<double>;
@@ -127,7 +127,8 @@ class ScoreStatistics {
     if (beams == BeamsOf::kSurfaces) return;
     add_spread("time", errors.block);
     add_mean("time", errors.block);
-    if (are_various(errors.remission)) add_mean("remission", groups_of(errors.remission, kGroups));
+    if (are_various(errors.remission))
+      add_mean("remission", statistics::groups_of(errors.remission, kGroups));
     // Centring the values of a beam makes them negatively correlated.
     const double off_the_mean = -static_cast<double>(sums_in(beam, Scores(beam.size())).size()) / ranges_;
     add_correlation("next scan", neighbours(errors.beam, errors.block), off_the_mean);
@@ -151,7 +152,7 @@ class ScoreStatistics {
                     [groups](const Scores& scores) { return spread_statistic(groups, scores); }});
   }
   void add_spread_by(const std::string& covariate, std::span<const float> values) {
-    if (are_various(values)) add_spread(covariate, groups_of(values, kGroups));
+    if (are_various(values)) add_spread(covariate, statistics::groups_of(values, kGroups));
   }
   void add_mean(const std::string& covariate, const std::vector<std::uint32_t>& groups) {
     all_.push_back({covariate, "range", "m", sigma_ / std::sqrt(ranges_),
@@ -191,7 +192,7 @@ struct Simulator {
 
 /// Simulates ranges in place of the measured ones, with the device's quantization.
 RangeErrors made_by(const Simulator& by, RangeErrors errors, std::uint64_t seed) {
-  RandomStream random(seed, "ranges");
+  statistics::RandomStream random(seed, "ranges");
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double at = double{errors.range[i]} + (by.curve.size() > 0 ? by.curve[errors.block[i]] : 0);
     double range = at + by.model.drawn(random, errors.echo(i), errors.beam[i]);
@@ -245,7 +246,7 @@ Chances chances_in(const ScoreStatistics& tests, const Simulator& by, const Rang
                    std::uint64_t seed) {
   constexpr std::size_t kSimulations = 99;
   std::vector<std::vector<double>> simulated(tests.all().size(), std::vector<double>(kSimulations));
-  for_each_index(kSimulations, [&](std::size_t s) {
+  quality::for_each_index(kSimulations, [&](std::size_t s) {
     const RangeErrors made = made_by(by, errors, seed + s);
     const auto values = tests.statistics(scores_of(fitted(by.model, made), made));
     for (std::size_t k = 0; k < values.size(); ++k) simulated[k][s] = values[k];
@@ -256,14 +257,14 @@ Chances chances_in(const ScoreStatistics& tests, const Simulator& by, const Rang
     const Chance& chance = chances.of_test.emplace_back(values);
     for (std::size_t s = 0; s < kSimulations; ++s) least[s] = std::min(least[s], chance.of(values[s]));
   }
-  chances.independent = effective_number_of_tests(least);
+  chances.independent = statistics::effective_number_of_tests(least);
   return chances;
 }
 
 }  // namespace
 
-FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& like,
-                                      const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
+data::FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& like,
+                                            const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
   constexpr std::size_t kMax = 60'000;
   RangeErrors errors = thinned(all, kMax);
   const double step = step_of(errors);
@@ -276,29 +277,31 @@ FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& 
   const ScoreStatistics tests(errors, beams);
   const Chances chances = chances_in(tests, {.model = model, .curve = curve, .step = step}, errors, seed);
   const auto measured = tests.statistics(scores_of(model, errors));
-  FitStatistics result;
+  data::FitStatistics result;
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const SingleTest& test = tests.all()[k];
     const Chance& chance = chances.of_test[k];
-    result.tests.push_back({.covariate = test.covariate,
-                            .quantity = test.quantity,
-                            .unit = test.unit,
-                            .amplitude = test.scale * std::sqrt(std::max(0.0, measured[k] - chance.mean())),
-                            .p_value = sidak_p_value(chances.independent, chance.of(measured[k]))});
+    result.tests.push_back(
+        {.covariate = test.covariate,
+         .quantity = test.quantity,
+         .unit = test.unit,
+         .amplitude = test.scale * std::sqrt(std::max(0.0, measured[k] - chance.mean())),
+         .p_value = statistics::sidak_p_value(chances.independent, chance.of(measured[k]))});
     result.p_value = std::min(result.p_value, result.tests.back().p_value);
   }
   return result;
 }
 
-GoodnessOfFit goodness_of_fit(const std::string& laser, const RangeErrors& errors, const NoiseModel& named,
-                              const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed) {
+data::GoodnessOfFit goodness_of_fit(const std::string& laser, const RangeErrors& errors,
+                                    const NoiseModel& named, const Eigen::VectorXd& curve, BeamsOf beams,
+                                    std::uint64_t seed) {
   NoiseModel model = named;
   model.relative.clear();
-  GoodnessOfFit result{
+  data::GoodnessOfFit result{
       .scope = laser, .before = goodness_of_noise_model(errors, {}, {}, beams, seed), .after = {}};
   const bool is_plain = model.is_normal() && curve.size() == 0;
   result.after = is_plain ? result.before : goodness_of_noise_model(errors, model, curve, beams, seed);
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Type of the recording, which selects the test statistics.
 enum class BeamsOf {
@@ -27,15 +27,16 @@ enum class BeamsOf {
 /// @param all    errors about each beam's mean, as measured; large samples are reduced to some blocks
 /// @param like   structure of the noise model; its parameters are fitted here
 /// @param curve  [m] common-mode error by block; empty for none
-FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& like,
-                                      const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed);
+data::FitStatistics goodness_of_noise_model(const RangeErrors& all, const NoiseModel& like,
+                                            const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed);
 
 /// Compares one laser's ranges with simulated ones of the normal noise model and of the identified noise
 /// model.
 ///
 /// @param named  the identified noise model, without the relative noise of beams, which is not simulated
 /// @param curve  [m] identified common-mode error by block
-GoodnessOfFit goodness_of_fit(const std::string& laser, const RangeErrors& errors, const NoiseModel& named,
-                              const Eigen::VectorXd& curve, BeamsOf beams, std::uint64_t seed);
+data::GoodnessOfFit goodness_of_fit(const std::string& laser, const RangeErrors& errors,
+                                    const NoiseModel& named, const Eigen::VectorXd& curve, BeamsOf beams,
+                                    std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

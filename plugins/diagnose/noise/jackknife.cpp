@@ -10,7 +10,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::uint32_t kParts = 20;  // with fewer, the standard error is too uncertain for a 3 σ test
@@ -34,7 +34,7 @@ std::vector<JackknifedModel::Without> without_each(const std::vector<std::uint32
                                                    const NoiseModel& model, const RangeErrors& errors) {
   if (parts.empty() || std::ranges::max(parts) == 0) return {};
   std::vector<JackknifedModel::Without> without(std::ranges::max(parts) + std::size_t{1});
-  for_each_index(without.size(), [&](std::size_t part) {
+  quality::for_each_index(without.size(), [&](std::size_t part) {
     RangeErrors rest = select(errors, [&](std::size_t i) { return parts[i] != part; });
     rest.centre_beams();
     const auto left = static_cast<double>(rest.size());
@@ -114,4 +114,4 @@ std::vector<Parameter> parameters_of(const NoiseComponent& component, const Jack
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 #include "plugins/diagnose/noise/noise_components.hpp"
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// A noise model fitted to convergence, with its delete-a-group jackknife replicates.
 struct JackknifedModel {
@@ -34,4 +34,4 @@ JackknifedModel in_parts(const NoiseModel& model, const RangeErrors& errors);
 /// deviation of a surface from a plane repeats at every turn.
 std::vector<Parameter> parameters_of(const NoiseComponent& component, const JackknifedModel& fits);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

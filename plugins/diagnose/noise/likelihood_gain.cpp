@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/bootstrap.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr const char* kMetric = "log-likelihood a measurement";
@@ -50,7 +50,7 @@ Gain likelihood_gain(const std::vector<double>& before, const std::vector<double
   if (sums.size() < 2) return gain;
   gain.before = all.before / all.count;
   gain.after = all.after / all.count;
-  gain.ci95 = bootstrap(sums.size(), 1, seed, kDrawn, [&](const std::vector<std::size_t>& drawn) {
+  gain.ci95 = statistics::bootstrap(sums.size(), 1, seed, kDrawn, [&](const std::vector<std::size_t>& drawn) {
                 Sum total;
                 for (const std::size_t k : drawn) add(sums[k], total);
                 return (total.after - total.before) / total.count;
@@ -68,4 +68,4 @@ void share_explained(std::span<Finding> findings, std::span<const UnnamedFinding
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 
 #include <crisp/findings.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Held-out gain of one noise model over another: mean difference of the log-likelihood per range.
 ///
@@ -20,4 +20,4 @@ Gain likelihood_gain(const std::vector<double>& before, const std::vector<double
 /// of them. Findings that were judged by another metric stay as they are.
 void share_explained(std::span<Finding> findings, std::span<const UnnamedFinding> unnamed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

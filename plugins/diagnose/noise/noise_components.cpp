@@ -5,10 +5,10 @@
 
 #include "plugins/diagnose/noise/peak_weights.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
-NoiseComponent growing(const char* cause, VariancePart part, const char* parameter, const char* unit) {
+NoiseComponent growing(const char* cause, model::VariancePart part, const char* parameter, const char* unit) {
   const auto index = static_cast<std::size_t>(part);
   return {.cause = cause,
           .add = [index](NoiseModel& model) { model.parts[index] = true; },
@@ -85,11 +85,12 @@ std::vector<NoiseComponent> noise_components(const RangeErrors& errors, double s
   const auto add_if_seen = [&](std::span<const float> values, NoiseComponent component) {
     if (are_various(values)) components.push_back(std::move(component));
   };
-  add_if_seen(errors.range, growing("noise.range_dependent", VariancePart::kRange, "slope", "1"));
-  add_if_seen(errors.cosine, growing("noise.incidence_dependent", VariancePart::kIncidence, "spread", "m"));
+  add_if_seen(errors.range, growing("noise.range_dependent", model::VariancePart::kRange, "slope", "1"));
+  add_if_seen(errors.cosine,
+              growing("noise.incidence_dependent", model::VariancePart::kIncidence, "spread", "m"));
   add_if_seen(errors.remission,
-              growing("noise.remission_dependent", VariancePart::kRemission, "jitter", "m"));
+              growing("noise.remission_dependent", model::VariancePart::kRemission, "jitter", "m"));
   return components;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,7 +10,7 @@
 
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// One extension of the normal noise model.
 struct NoiseComponent {
@@ -30,4 +30,4 @@ bool are_various(std::span<const float> values);
 /// @param sigma  [m] of the normal noise model, for start values
 std::vector<NoiseComponent> noise_components(const RangeErrors& errors, double sigma);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

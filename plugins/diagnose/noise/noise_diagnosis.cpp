@@ -16,7 +16,7 @@
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kBic = 10;  // minimum decrease of the BIC
@@ -158,7 +158,8 @@ void eliminate_needless(std::vector<SelectedComponent>& found, NoiseModel& model
 UnnamedFinding unnamed_of(const Finding& finding, const NoiseModel& model, const RangeErrors& errors) {
   double squares = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    squares += std::pow(deviation(model.size, errors.echo(i)) * (model.relative[errors.beam[i]] - 1), 2);
+    squares +=
+        std::pow(model::deviation(model.size, errors.echo(i)) * (model.relative[errors.beam[i]] - 1), 2);
   }
   return {.covariate = "beam",
           .quantity = "noise",
@@ -224,4 +225,4 @@ NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, 
   return result;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Noise model of one laser, selected forward by BIC from the normal one.
 struct NoiseDiagnosis {
@@ -27,4 +27,4 @@ struct NoiseDiagnosis {
 NoiseDiagnosis diagnose_noise(const std::string& scope, const RangeErrors& all, std::uint64_t seed,
                               double least_gain = 0);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

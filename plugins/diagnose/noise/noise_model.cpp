@@ -9,8 +9,10 @@
 #include "pipeline/statistics/random_stream.hpp"
 #include "plugins/diagnose/noise/expectation_step.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using model::EchoConditions;
 
 /// One of up to four components of the normal mixture.
 struct Part {
@@ -68,7 +70,8 @@ NoiseModel fitted_normal(NoiseModel model, const RangeErrors& errors) {
 
 void take_variance(const ExpectationSums& sums, NoiseModel& model) {
   const std::vector<double> squares = sums.variance.solution();
-  for (std::size_t part = 0; part < kVarianceParts; ++part) model.size[part] = std::sqrt(squares[part]);
+  for (std::size_t part = 0; part < model::kVarianceParts; ++part)
+    model.size[part] = std::sqrt(squares[part]);
   model.size[0] = std::sqrt(std::max(kMinVariance, squares[0]));
 }
 
@@ -157,7 +160,7 @@ bool NoiseModel::is_normal() const {
 }
 
 double NoiseModel::deviation(const EchoConditions& echo, std::uint16_t beam) const {
-  return relative_of(*this, beam) * crisp::deviation(size, echo);
+  return relative_of(*this, beam) * model::deviation(size, echo);
 }
 
 double NoiseModel::variance(const EchoConditions& echo, std::uint16_t beam) const {
@@ -189,7 +192,8 @@ double NoiseModel::normal_score(double value, const EchoConditions& echo, std::u
   return below < above ? -score_above(below) : score_above(above);
 }
 
-double NoiseModel::drawn(RandomStream& random, const EchoConditions& echo, std::uint16_t beam) const {
+double NoiseModel::drawn(statistics::RandomStream& random, const EchoConditions& echo,
+                         std::uint16_t beam) const {
   const Parts all = parts_of(*this, beam);
   double left = random.uniform();
   std::size_t k = 0;
@@ -215,4 +219,4 @@ NoiseModel fitted(const NoiseModel& like, const RangeErrors& errors, double sett
   return model;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,7 +10,7 @@
 #include "pipeline/model/range_variance.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Range errors of one laser with their covariates, as arrays over its ranges.
 struct RangeErrors {
@@ -27,7 +27,7 @@ struct RangeErrors {
   /// Subtracts each beam's mean from its values.
   void centre_beams();
   /// Covariates of range i.
-  EchoConditions echo(std::size_t i) const;
+  model::EchoConditions echo(std::size_t i) const;
 };
 
 /// Noise model of ranges: the plain simulator's normal distribution, extended by components of `noise.*`.
@@ -36,38 +36,38 @@ struct RangeErrors {
 /// With two peaks, each beam's distribution is a mixture about two values `separation` apart, with a weight
 /// of the farther peak per beam.
 struct NoiseModel {
-  ByPart size{0.012, 0, 0, 0};   ///< sizes of the variance's parts: sigma, slope, spread, jitter
-  double tail_share = 0;         ///< share of ranges in the tail
-  double tail_scale = 5;         ///< relative standard deviation of the tail
-  double separation = 0;         ///< [m] between the two peaks
-  std::vector<double> weight;    ///< of the farther peak, by beam; empty without a separation
-  std::vector<double> relative;  ///< relative standard deviation by beam; empty if all are equal
+  model::ByPart size{0.012, 0, 0, 0};  ///< sizes of the variance's parts: sigma, slope, spread, jitter
+  double tail_share = 0;               ///< share of ranges in the tail
+  double tail_scale = 5;               ///< relative standard deviation of the tail
+  double separation = 0;               ///< [m] between the two peaks
+  std::vector<double> weight;          ///< of the farther peak, by beam; empty without a separation
+  std::vector<double> relative;        ///< relative standard deviation by beam; empty if all are equal
 
-  std::array<bool, kVarianceParts> parts{true};  ///< parts of the variance that the model has
+  std::array<bool, model::kVarianceParts> parts{true};  ///< parts of the variance that the model has
   bool has_tail = false;
 
-  bool has(VariancePart part) const { return parts[static_cast<std::size_t>(part)]; }
+  bool has(model::VariancePart part) const { return parts[static_cast<std::size_t>(part)]; }
   bool has_peaks() const { return !weight.empty(); }
   bool has_relative() const { return !relative.empty(); }
   bool is_normal() const;
 
   /// [m] Constant part of the standard deviation.
-  double sigma() const { return size[static_cast<std::size_t>(VariancePart::kSigma)]; }
+  double sigma() const { return size[static_cast<std::size_t>(model::VariancePart::kSigma)]; }
 
   /// [m] Standard deviation of one range, without tail and second peak.
-  double deviation(const EchoConditions& echo, std::uint16_t beam) const;
+  double deviation(const model::EchoConditions& echo, std::uint16_t beam) const;
 
   /// ln of the density [1/m].
-  double log_density(double value, const EchoConditions& echo, std::uint16_t beam) const;
+  double log_density(double value, const model::EchoConditions& echo, std::uint16_t beam) const;
 
   /// Quantile of the standard normal distribution at the value's cumulative probability.
-  double normal_score(double value, const EchoConditions& echo, std::uint16_t beam) const;
+  double normal_score(double value, const model::EchoConditions& echo, std::uint16_t beam) const;
 
   /// [m] Draws a random error.
-  double drawn(RandomStream& random, const EchoConditions& echo, std::uint16_t beam) const;
+  double drawn(statistics::RandomStream& random, const model::EchoConditions& echo, std::uint16_t beam) const;
 
   /// [m²] Variance including the tail and both peaks.
-  double variance(const EchoConditions& echo, std::uint16_t beam) const;
+  double variance(const model::EchoConditions& echo, std::uint16_t beam) const;
 };
 
 /// Fits a noise model of the structure of `like` by maximum likelihood (EM algorithm).
@@ -84,4 +84,4 @@ RangeErrors thinned(const RangeErrors& errors, std::size_t most);
 /// Number of beams: the greatest index plus one.
 std::size_t beams_of(const RangeErrors& errors);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -23,14 +23,14 @@
 #include "plugins/diagnose/scene/mixed_pixels.hpp"
 #include "plugins/diagnose/scene/visibility.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kTooFew = 1000;  // minimum number of ranges for a noise model
 
 /// @param noise  [m] flatness of the selected surfaces
-SurfaceObservations all_of(const SensorModel& model, const Sample& sample, double noise) {
-  SurfelSettings settings;
+SurfaceObservations all_of(const SensorModel& model, const estimate::Sample& sample, double noise) {
+  quality::SurfelSettings settings;
   settings.noise = noise;
   return {model, sample, settings, std::numeric_limits<std::size_t>::max(), {}, SurfacesOf::kSearch};
 }
@@ -70,12 +70,13 @@ void DiagnoseNoiseModelStage::process(const Inputs& in, Outputs&, Context& conte
 }
 
 void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
-  const Sample sample = longest_recording(collected_.sample());
+  const estimate::Sample sample = estimate::longest_recording(collected_.sample());
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   const SensorModel model(*calibration_, context.run().registrar->get<TermRegistry>());
-  const LagRange lag = lag_range(model, 0);
+  const estimate::LagRange lag = estimate::lag_range(model, 0);
   context.progress(0, "associating beams with surfaces");
-  const SurfaceObservations observations = all_of(model, covered(sample, lag.earliest, lag.latest), noise_);
+  const SurfaceObservations observations =
+      all_of(model, estimate::covered(sample, lag.earliest, lag.latest), noise_);
   const Measurements& beams = observations.sample().beams;
   AssociatedBeams all{
       .model = model,
@@ -84,7 +85,7 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
       .points = observations.beams().points,
       .association = associate_beams(observations.surfels(), observations.beams(), beams.range),
       .density = PointDensity(observations.beams().points),
-      .blocks = recording_blocks(beams)};
+      .blocks = estimate::recording_blocks(beams)};
   all.typical_sigma = usual_error(all.association);
   Findings found;
   std::vector<std::string> without_edges;
@@ -103,12 +104,12 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
       changing_directions(beams, *observations.sample().plate, all.association, all.typical_sigma);
   if (const auto moved = moving(changing, context.seed())) {
     found.findings.push_back(*moved);
-    if (folder_) write_plots(*folder_ / "scene_moving.svg", {moving_plot(changing)}, context);
+    if (folder_) plot::write_plots(*folder_ / "scene_moving.svg", {moving_plot(changing)}, context);
   }
-  add_fit_statistics(reported_, found);
+  data::add_fit_statistics(reported_, found);
   for (const Finding& finding : found.findings) context.print(in_words(finding));
   for (const UnnamedFinding& finding : found.unnamed) context.print(in_words(finding));
-  if (!reported_.empty()) context.print(fit_statistics_text(found));
+  if (!reported_.empty()) context.print(data::fit_statistics_text(found));
   context.report({{"findings", found.findings.size()},
                   {"unnamed", found.unnamed.size()},
                   {"before_p", found.before_p},
@@ -122,7 +123,7 @@ std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Associat
   const std::string& name = calibration_->lasers[laser].name;
   const std::size_t named = found.findings.size();
   const std::size_t unnamed = found.unnamed.size();
-  std::vector<Plot> plots;
+  std::vector<plot::Plot> plots;
   const NoiseModel noise = add_noise(laser, all, found, plots, context);
   std::vector<float> ranges;
   std::vector<std::uint32_t> blocks;
@@ -146,7 +147,7 @@ std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Associat
     plots.push_back(edge_plot(name, edges));
   }
   share_explained(std::span(found.findings).subspan(named), std::span(found.unnamed).subspan(unnamed));
-  if (folder_ && !plots.empty()) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
+  if (folder_ && !plots.empty()) plot::write_plots(*folder_ / (name + "_noise.svg"), plots, context);
   return edges.mixed.size();
 }
 
@@ -172,7 +173,7 @@ std::pair<RangeErrors, NoiseDiagnosis> DiagnoseNoiseModelStage::noise_of(std::si
 }
 
 NoiseModel DiagnoseNoiseModelStage::add_noise(std::size_t laser, const AssociatedBeams& all, Findings& found,
-                                              std::vector<Plot>& plots, Context& context) {
+                                              std::vector<plot::Plot>& plots, Context& context) {
   const std::string& name = calibration_->lasers[laser].name;
   const auto [errors, noise] = noise_of(laser, all, context);
   if (errors.size() < kTooFew) {
@@ -195,4 +196,4 @@ NoiseModel DiagnoseNoiseModelStage::add_noise(std::size_t laser, const Associate
   return noise.model;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -23,7 +23,7 @@
 #include "plugins/diagnose/scene/beam_association.hpp"
 #include "plugins/diagnose/scene/mixed_pixels.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.noise_model`: estimates the range noise of a turning scanner and detects moving objects.
 class DiagnoseNoiseModelStage final : public Stage {
@@ -53,16 +53,16 @@ class DiagnoseNoiseModelStage final : public Stage {
                                                   Context& context) const;
   /// @param plots  receives the plots of the noise model
   NoiseModel add_noise(std::size_t laser, const AssociatedBeams& all, Findings& found,
-                       std::vector<Plot>& plots, Context& context);
+                       std::vector<plot::Plot>& plots, Context& context);
 
-  double noise_ = SurfelSettings{}.noise;
+  double noise_ = quality::SurfelSettings{}.noise;
   double least_gain_ = 0.001;
   std::optional<std::filesystem::path> folder_;
-  OrientedPlate oriented_;
-  MeasurementBuffer collected_;
+  data::OrientedPlate oriented_;
+  estimate::MeasurementBuffer collected_;
   std::shared_ptr<const Calibration> calibration_;
-  std::vector<GoodnessOfFit> reported_;
+  std::vector<data::GoodnessOfFit> reported_;
   Findings all_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

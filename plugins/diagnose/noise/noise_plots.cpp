@@ -12,8 +12,11 @@
 #include "pipeline/statistics/histogram.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using plot::Plot;
+using plot::PlotSeries;
 
 constexpr double kBarLength = 2;  // [standard errors]
 
@@ -36,7 +39,7 @@ double shown_density(double density, double least) {
 }
 
 PlotSeries model_over(const std::string& name, const NoiseModel& model, const RangeErrors& errors,
-                      const Histogram& bins, double least) {
+                      const statistics::Histogram& bins, double least) {
   PlotSeries series{.name = name, .x = {}, .y = {}};
   for (std::size_t b = 0; b < bins.count.size(); ++b) {
     series.x.push_back(1e3 * bins.middle(b));
@@ -53,7 +56,7 @@ Plot distribution(const std::string& name, const RangeErrors& errors, const Nois
   const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size() - 1));
   std::ranges::nth_element(sizes, at);
   const double farthest = std::max(1e-6, double{*at});
-  Histogram bins(-farthest, farthest, kBins);
+  statistics::Histogram bins(-farthest, farthest, kBins);
   for (const float error : errors.value) bins.add(double{error});
   const double one = 1 / (bins.all * bins.width);  // [1/m] of a single range in a bin
   PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
@@ -66,7 +69,7 @@ Plot distribution(const std::string& name, const RangeErrors& errors, const Nois
             .x_label = "error [mm]",
             .y_label = "density [1/mm], logarithmic",
             .series = {measured, model_over("normal noise", noise.plain, errors, bins, one)},
-            .y_scale = PlotScale::logarithmic};
+            .y_scale = plot::PlotScale::logarithmic};
   if (!noise.model.is_normal()) {
     plot.series.push_back(model_over("noise model", noise.model, errors, bins, one));
   }
@@ -74,7 +77,7 @@ Plot distribution(const std::string& name, const RangeErrors& errors, const Nois
 }
 
 /// Share of each bin [%], with the uniform distribution.
-std::vector<PlotSeries> next_to_even(const Histogram& bins, double unit) {
+std::vector<PlotSeries> next_to_even(const statistics::Histogram& bins, double unit) {
   PlotSeries measured{.name = "measured", .x = {}, .y = {}, .joined = false};
   PlotSeries even{.name = "uniform", .x = {}, .y = {}};
   for (std::size_t b = 0; b < bins.count.size(); ++b) {
@@ -138,7 +141,7 @@ Plot noise_over(const NoiseCovariate& over, const std::string& name, const Range
 std::vector<float> incidence_in_degrees(const RangeErrors& errors) {
   std::vector<float> degrees;
   for (const float cosine : errors.cosine)
-    degrees.push_back(static_cast<float>(std::acos(std::clamp(double{cosine}, -1.0, 1.0)) / kDegree));
+    degrees.push_back(static_cast<float>(std::acos(std::clamp(double{cosine}, -1.0, 1.0)) / data::kDegree));
   return degrees;
 }
 
@@ -161,7 +164,7 @@ std::vector<Plot> noise_plots(const std::string& name, const RangeErrors& errors
 
 Plot quantization_plot(const std::string& name, std::span<const float> ranges, double step) {
   constexpr std::size_t kBins = 40;
-  Histogram bins(-step / 2, step / 2, kBins);
+  statistics::Histogram bins(-step / 2, step / 2, kBins);
   for (const float range : ranges) bins.add(std::remainder(double{range}, step));
   return {.title = fmt::format("{}: remainders of ranges modulo {:.4g} mm", name, 1e3 * step),
           .x_label = "remainder [mm]",
@@ -171,7 +174,7 @@ Plot quantization_plot(const std::string& name, std::span<const float> ranges, d
 
 Plot edge_plot(const std::string& name, const Crossings& edges) {
   constexpr std::size_t kBins = 10;
-  Histogram bins(0, 1, kBins);
+  statistics::Histogram bins(0, 1, kBins);
   for (const double place : edges.places) bins.add(place);
   return {.title = fmt::format("{}: {:.1f} % of {} edges with a mixed pixel", name, 100 * edges.share(),
                                edges.mixed.size()),
@@ -195,4 +198,4 @@ Plot moving_plot(const ChangingDirections& directions) {
           .series = {hidden}};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -15,7 +15,7 @@
 #include "plugins/diagnose/noise/noise_plots.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 Finding finding_of(const CommonModeChange& change, const std::string& laser) {
@@ -63,7 +63,7 @@ void DiagnoseNoiseStage::describe(StageDescription<DiagnoseNoiseStage>& d) {
 void DiagnoseNoiseStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const Findings* before = in.find<Findings>()) all_.append(*before);
   if (const PlateReading* reading = in.find<PlateReading>()) plate_.add(*reading);
-  const auto scan = with_used_echoes(in.share<Scan>(), context.rig());
+  const auto scan = data::with_used_echoes(in.share<Scan>(), context.rig());
   if (!scan) return;
   if (lasers_.empty()) {
     lasers_.resize(context.rig().lasers.size());
@@ -92,12 +92,12 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const StationaryScan
   }
   RangeErrors* errors = &std::get<RangeErrors>(judged);
   const RangeErrors measured = *errors;
-  const std::int64_t epoch_ns = epoch_of_run(first_ns_);
+  const std::int64_t epoch_ns = clocks::epoch_of_run(first_ns_);
   std::vector<double> seconds;
   for (std::size_t scan = 0; scan < scans.scans(); ++scan) {
     seconds.push_back(1e-9 * static_cast<double>(scans.receipt_ns(scan) - epoch_ns));
   }
-  std::vector<Plot> plots;
+  std::vector<plot::Plot> plots;
   const CommonModeError together = common_mode_error(*errors, seconds, lasers_.size(), context.seed());
   if (together.change) all.findings.push_back(finding_of(*together.change, name));
   if (together.wander) all.unnamed.push_back(finding_of(*together.wander, name));
@@ -121,10 +121,10 @@ void DiagnoseNoiseStage::add_laser(const std::string& name, const StationaryScan
   if (reported_.back().after.p_value < kMayDepart) {
     const auto left =
         goodness_of_noise_model(measured, noise.model, together.curve, BeamsOf::kLaserAtRest, context.seed());
-    add_left_over(name, left, lasers_.size(), all);
+    data::add_left_over(name, left, lasers_.size(), all);
   }
   std::ranges::move(noise_plots(name, *errors, noise), std::back_inserter(plots));
-  if (folder_) write_plots(*folder_ / (name + "_noise.svg"), plots, context);
+  if (folder_) plot::write_plots(*folder_ / (name + "_noise.svg"), plots, context);
 }
 
 void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {
@@ -135,13 +135,13 @@ void DiagnoseNoiseStage::finish(Outputs& out, Context& context) {
     if (context.interrupted()) return;
     add_laser(context.rig().lasers[laser].name, lasers_[laser], all, context);
   }
-  add_fit_statistics(reported_, all);
+  data::add_fit_statistics(reported_, all);
   for (const Finding& finding : all.findings) context.print(in_words(finding));
   for (const UnnamedFinding& finding : all.unnamed) context.print(in_words(finding));
-  if (!reported_.empty()) context.print(fit_statistics_text(all));
+  if (!reported_.empty()) context.print(data::fit_statistics_text(all));
   context.report({{"findings", all.findings.size()}, {"before_p", all.before_p}, {"after_p", all.after_p}});
   all_.append(all);
   out.give(std::move(all_));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

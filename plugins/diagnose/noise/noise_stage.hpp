@@ -13,7 +13,7 @@
 #include "plugins/diagnose/noise/goodness_of_fit.hpp"
 #include "plugins/diagnose/noise/stationary_scans.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.noise`: estimates the range noise of stationary lasers and their common-mode errors.
 class DiagnoseNoiseStage final : public Stage {
@@ -29,8 +29,8 @@ class DiagnoseNoiseStage final : public Stage {
   std::vector<StationaryScans> lasers_;  // of the rig
   PlateStandstill plate_;
   std::int64_t first_ns_ = 0;  // receipt time of the first scan
-  std::vector<GoodnessOfFit> reported_;
+  std::vector<data::GoodnessOfFit> reported_;
   Findings all_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -14,13 +14,13 @@ namespace crisp::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class Tag>
-HWY_INLINE void expect_some(Tag tag, const MixtureBlock& block, std::size_t k) {
+HWY_INLINE void expect_some(Tag tag, const diagnose::MixtureBlock& block, std::size_t k) {
   constexpr double kOneBySqrtTwoPi = 0.3989422804014327;
   const auto value = hn::LoadU(tag, block.value + k);
   const auto deviation = hn::LoadU(tag, block.deviation + k);
   const auto half = hn::Set(tag, -0.5);
   auto total = hn::Set(tag, 1e-300);
-  hn::Vec<Tag> density[MixtureBlock::kMaxComponents];
+  hn::Vec<Tag> density[diagnose::MixtureBlock::kMaxComponents];
   for (std::size_t c = 0; c < block.components; ++c) {
     const auto& component = block.component[c];
     const auto spread = hn::Mul(deviation, hn::Set(tag, component.scale));
@@ -36,7 +36,7 @@ HWY_INLINE void expect_some(Tag tag, const MixtureBlock& block, std::size_t k) {
   hn::StoreU(hn::Log(tag, total), tag, block.log_density + k);
 }
 
-void expect(const MixtureBlock& block) {
+void expect(const diagnose::MixtureBlock& block) {
   const hn::ScalableTag<double> many;
   const hn::CappedTag<double, 1> one;
   std::size_t k = 0;
@@ -52,7 +52,7 @@ namespace crisp::simd {
 
 HWY_EXPORT(expect);
 
-void expect(const MixtureBlock& block) { HWY_DYNAMIC_DISPATCH(expect)(block); }
+void expect(const diagnose::MixtureBlock& block) { HWY_DYNAMIC_DISPATCH(expect)(block); }
 
 }  // namespace crisp::simd
 #endif

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// n values with their normal mixture of up to four components. All arrays have n elements.
 struct MixtureBlock {
@@ -24,10 +24,11 @@ struct MixtureBlock {
   double* log_density = nullptr;  ///< out: ln of the mixture's density [1/m] at the value
 };
 
-namespace simd {
+}  // namespace crisp::diagnose
+
+namespace crisp::simd {
 
 /// The expectation step of EM for normal mixtures. Densities are at least 1e-300.
-void expect(const MixtureBlock& block);
+void expect(const diagnose::MixtureBlock& block);
 
-}  // namespace simd
-}  // namespace crisp
+}  // namespace crisp::simd

@@ -8,7 +8,7 @@
 
 #include "pipeline/quality/blocks.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kWeights = 201;  // grid of weights from 0 to 1
@@ -124,10 +124,10 @@ struct Moments {
 WeightLimits weight_limits(const NoiseModel& model, const RangeErrors& errors) {
   const std::vector<OfBeam> beams = by_beam(model, errors);
   std::vector<ByWeight> integrals(beams.size());
-  for_each_index(beams.size(),
-                 [&](std::size_t b) { integrals[b] = integral_of(likelihood_of(beams[b], model)); });
+  quality::for_each_index(beams.size(),
+                          [&](std::size_t b) { integrals[b] = integral_of(likelihood_of(beams[b], model)); });
   std::vector<std::vector<double>> logarithms(kWeights);
-  for_each_index(kWeights, [&](std::size_t first) {
+  quality::for_each_index(kWeights, [&](std::size_t first) {
     for (std::size_t last = first + 1; last < kWeights; ++last) {
       logarithms[first].push_back(likelihood_between(first, last, integrals));
     }
@@ -147,4 +147,4 @@ WeightLimits weight_limits(const NoiseModel& model, const RangeErrors& errors) {
       .least = lower.mean(), .most = upper.mean(), .least_error = lower.error(), .most_error = upper.error()};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

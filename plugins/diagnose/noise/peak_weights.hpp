@@ -3,7 +3,7 @@
 
 #include "plugins/diagnose/noise/noise_model.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Limits of a uniform distribution of the beams' weights of the farther peak.
 struct WeightLimits {
@@ -26,4 +26,4 @@ struct WeightLimits {
 /// @param errors  about the means of their beams
 WeightLimits weight_limits(const NoiseModel& model, const RangeErrors& errors);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -13,7 +13,7 @@
 #include "pipeline/statistics/monte_carlo_test.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 Eigen::MatrixXd given(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns) {
@@ -31,7 +31,7 @@ std::vector<double> left_of_others(const Eigen::MatrixXd& design, const Eigen::V
   Eigen::VectorXd left = values(rest);
   if (design.cols() > 0) {
     const Eigen::MatrixXd some = design(fitted, Eigen::all);
-    left -= design(rest, Eigen::all) * least_squares(some, values(fitted));
+    left -= design(rest, Eigen::all) * statistics::least_squares(some, values(fitted));
   }
   return {left.begin(), left.end()};
 }
@@ -63,27 +63,27 @@ Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
           .unit = {},
           .before = rms(before, all),
           .after = rms(after, all),
-          .ci95 = bootstrap(before.size(), 1, seed, kDraws, change).ci95};
+          .ci95 = statistics::bootstrap(before.size(), 1, seed, kDraws, change).ci95};
 }
 
 PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                             const Eigen::VectorXd& values, std::uint64_t seed) {
   constexpr std::size_t kShuffles = 4999;
-  const SeriesFit fit = best_in_series(base, columns, values);
+  const clocks::SeriesFit fit = clocks::best_in_series(base, columns, values);
   PermutationTest test{.column = fit.column,
                        .values = fit.values,
                        .errors = fit.errors,
                        .gain = gain_in_series(base, columns.col(fit.column), values, seed)};
   // All permutations have the same sum of squares, so the largest inner product decides.
-  const Eigen::MatrixXd unit = off_base(base, columns).colwise().normalized();
-  Eigen::VectorXd left = off_base(base, values);
-  RandomStream random(seed, "permutations");
+  const Eigen::MatrixXd unit = clocks::off_base(base, columns).colwise().normalized();
+  Eigen::VectorXd left = clocks::off_base(base, values);
+  statistics::RandomStream random(seed, "permutations");
   const auto permuted = [&] {
     random.shuffle(left);
     return (unit.transpose() * left).cwiseAbs().maxCoeff();
   };
-  test.p_value = monte_carlo_test(fit.product, kShuffles, permuted).p_value;
+  test.p_value = statistics::monte_carlo_test(fit.product, kShuffles, permuted).p_value;
   return test;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

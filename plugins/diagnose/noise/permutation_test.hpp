@@ -6,7 +6,7 @@
 
 #include <crisp/findings.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Significance level of a cause in a time series, for p-values corrected for multiple testing.
 constexpr double kSignificantInSeries = 0.002;
@@ -38,4 +38,4 @@ Gain gain_in_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
 PermutationTest test_series(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
                             const Eigen::VectorXd& values, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -10,7 +10,7 @@
 
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kTelegram = 0.001;         // [m] resolution of the telegram
@@ -157,4 +157,4 @@ std::optional<Finding> range_quantization(const std::string& scope, std::span<co
   return finding;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

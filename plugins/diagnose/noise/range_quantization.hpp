@@ -8,7 +8,7 @@
 
 #include <crisp/findings.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Detects range quantization coarser than the telegram's millimetre (noise.quantisation): a line in
 /// the spectrum of the ranges' distribution.
@@ -19,4 +19,4 @@ namespace crisp {
 std::optional<Finding> range_quantization(const std::string& scope, std::span<const float> ranges,
                                           std::span<const std::uint32_t> block, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kMaxSpread = 0.03;  // [m]
@@ -70,9 +70,9 @@ FarShots StationaryScans::far_shots() const {
     if (shots.empty()) continue;
     std::vector<double> ranges;
     for (const std::size_t scan : shots) ranges.push_back(range(scan, beam));
-    const double middle = median_in_place(ranges);
+    const double middle = statistics::median_in_place(ranges);
     for (double& value : ranges) value = std::abs(value - middle);
-    const double spread = kMadToSigma * median_in_place(ranges);
+    const double spread = statistics::kMadToSigma * statistics::median_in_place(ranges);
     if (spread > kMaxSpread) continue;
     far.shots += shots.size();
     for (const std::size_t scan : shots) {
@@ -108,7 +108,7 @@ std::variant<RangeErrors, InsufficientData> StationaryScans::errors(
     ++seen;
     std::vector<double> off;
     for (const std::size_t scan : shots) off.push_back(std::abs(range(scan, beam) - mean));
-    if (kMadToSigma * median_in_place(off) > kMaxSpread) continue;
+    if (statistics::kMadToSigma * statistics::median_in_place(off) > kMaxSpread) continue;
     ++steady;
     for (const std::size_t scan : shots) {
       all.value.push_back(static_cast<float>(range(scan, beam) - mean));
@@ -124,4 +124,4 @@ std::variant<RangeErrors, InsufficientData> StationaryScans::errors(
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -13,7 +13,7 @@
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/moving_objects.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Reason why the noise cannot be estimated from the scans.
 struct InsufficientData {
@@ -65,4 +65,4 @@ class StationaryScans {
   std::size_t left_out_ = 0;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

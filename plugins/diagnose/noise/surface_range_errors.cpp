@@ -11,7 +11,7 @@
 #include "plugins/diagnose/noise/likelihood_gain.hpp"
 #include "plugins/diagnose/noise/noise_components.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Whether two consecutive shots of a laser are of neighbouring beams: adjacent in a scan, or of a
@@ -106,7 +106,7 @@ double widest_deviation(const NoiseModel& model, const RangeErrors& errors) {
   for (std::size_t i = 0; i < errors.size(); ++i) {
     deviations.push_back(model.deviation(errors.echo(i), errors.beam[i]));
   }
-  return quantile_in_place(deviations, kMax);
+  return statistics::quantile_in_place(deviations, kMax);
 }
 
 std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const float> values,
@@ -114,7 +114,7 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                                        const NoiseModel& model, double least_gain, std::uint64_t seed) {
   constexpr double kUnlikely = 0.002;
   if (errors.size() < 100 * kGroups || !are_various(values)) return std::nullopt;
-  const auto groups = groups_of(values, kGroups);
+  const auto groups = statistics::groups_of(values, kGroups);
   std::vector<double> squares;
   std::vector<bool> is_even;
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -152,4 +152,4 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                         .accepted = gain.significant_increase()};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

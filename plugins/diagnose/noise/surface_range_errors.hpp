@@ -13,7 +13,7 @@
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/beam_association.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Range errors of one laser on static surfaces, about the mean of each beam. A range counts if both
 /// neighbouring beams of its scan (for a single-beam laser: the previous and next shot) end on the surface
@@ -40,4 +40,4 @@ std::optional<UnnamedFinding> noise_by(const std::string& name, std::span<const 
                                        const std::string& scope, const RangeErrors& errors,
                                        const NoiseModel& model, double least_gain, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

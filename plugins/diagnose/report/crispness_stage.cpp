@@ -8,7 +8,7 @@
 #include <crisp/registrar.hpp>
 #include <crisp/rqe.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 std::unique_ptr<Search> make_search(const std::string& name, const RunSettings& run) {
@@ -68,4 +68,4 @@ void CrispnessStage::finish(Outputs&, Context& context) {
   context.report({{"points", points_.size()}, {"widths", widths}});
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 #include <crisp/points.hpp>
 #include <crisp/stage_description.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage diagnose.crispness: measures a cloud's Rényi quadratic entropy (RQE) at given kernel widths.
 class CrispnessStage final : public Stage {
@@ -25,4 +25,4 @@ class CrispnessStage final : public Stage {
   Vectors points_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

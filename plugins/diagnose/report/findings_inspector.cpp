@@ -11,11 +11,11 @@
 #include "pipeline/files/json_text.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
-  const Findings all = read_findings(file);
+  const Findings all = files::read_findings(file);
   Inspection inspection;
   inspection.data = {{"findings", nlohmann::json::array()},
                      {"unnamed", all.unnamed.size()},
@@ -54,7 +54,7 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
         fmt::format("\n  {}: {} ranges, noise {:.2f} mm", facts.laser, facts.ranges, 1e3 * facts.sigma);
   }
   if (!std::isnan(all.before_p)) {
-    inspection.text += "\n  " + fit_statistics_text(all);
+    inspection.text += "\n  " + data::fit_statistics_text(all);
     inspection.data["before_p"] = all.before_p;
     inspection.data["after_p"] = all.after_p;
   }
@@ -64,11 +64,11 @@ Inspection inspect_findings(const std::filesystem::path& file, const Rig&) {
 /// Recognizes the first keys that findings_json() writes.
 bool is_findings(std::string_view head) {
   constexpr std::string_view kBegin = R"({"crisp":1,"findings":[)";
-  return without_space(head.substr(0, 2 * kBegin.size())).starts_with(kBegin);
+  return files::without_space(head.substr(0, 2 * kBegin.size())).starts_with(kBegin);
 }
 
 }  // namespace
 
 Inspector findings_inspector() { return {"a diagnosis", is_findings, inspect_findings}; }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

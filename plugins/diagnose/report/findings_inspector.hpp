@@ -3,9 +3,9 @@
 
 #include <crisp/inspector.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Inspector of a diagnosis.json.
 Inspector findings_inspector();
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr const char* kScanner = "scanner";  ///< scope of what all lasers have in common
@@ -269,4 +269,4 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 
 #include "plugins/diagnose/model/diagnosis.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Machine-readable findings of a diagnosis, in the order of selection.
 ///
@@ -27,4 +27,4 @@ std::string in_words(const Finding& finding);
 std::string in_words(const UnnamedFinding& finding);
 std::string in_words(const Diagnosis& diagnosis, const Findings& findings);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

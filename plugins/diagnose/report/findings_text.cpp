@@ -13,12 +13,12 @@
 #include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 std::string with_unit(const Parameter& parameter) {
   const bool is_long = parameter.unit == "s" && !(std::abs(parameter.value) < 1);
-  const ShownUnit as = is_long ? ShownUnit{.name = "s"} : shown_unit(parameter.unit);
+  const data::ShownUnit as = is_long ? data::ShownUnit{.name = "s"} : data::shown_unit(parameter.unit);
   const std::string error =
       parameter.std_error > 0 ? fmt::format(" ± {:.2g}", parameter.std_error * as.factor) : "";
   return fmt::format("{} = {:.4g}{}{}{}", parameter.name, parameter.value * as.factor, error,
@@ -83,7 +83,7 @@ std::string profiles_in_words(const ProfileComparison& left, const Calibration& 
       words += fmt::format("{:>14}", is_significant ? fmt::format("{:.3f}", found->second->rms * 1e3) : "-");
       if (is_significant) least = std::min(least, found->second->p_value);
     }
-    words += "   " + chance_in_words(least);
+    words += "   " + data::chance_in_words(least);
   }
   return words + "\n";
 }
@@ -127,13 +127,13 @@ std::string headline(const Finding& finding) {
   std::string words =
       fmt::format("{} of {}{}: ", finding.cause, finding.scope, finding.accepted ? "" : " (rejected)");
   for (const Parameter& parameter : finding.parameters) words += with_unit(parameter) + ", ";
-  return words + chance_in_words(finding.p_value);
+  return words + data::chance_in_words(finding.p_value);
 }
 
 std::string headline(const UnnamedFinding& finding) {
   const bool has_gain = !finding.gain.empty();
   return fmt::format("unnamed: {} of {} depends on {}{}, {}{}", finding.quantity, finding.scope,
-                     finding.covariate, by_how_much(finding), chance_in_words(finding.p_value),
+                     finding.covariate, by_how_much(finding), data::chance_in_words(finding.p_value),
                      has_gain && !finding.accepted ? " (rejected)" : "");
 }
 
@@ -175,7 +175,7 @@ std::string in_words(const Diagnosis& diagnosis, const Findings& findings) {
     words += fmt::format("estimator artifact ({}): {}\n", artifact.name, artifact.reason);
     for (const Parameter& parameter : artifact.parameters) words += "  " + with_unit(parameter) + "\n";
   }
-  return words + fit_statistics_text(findings) + untold_in_words(diagnosis);
+  return words + data::fit_statistics_text(findings) + untold_in_words(diagnosis);
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
-PlotSeries measured_in(const Distribution& distribution, const std::string& when) {
+plot::PlotSeries measured_in(const Distribution& distribution, const std::string& when) {
   constexpr double kBar = 2;  // standard errors
-  PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
+  plot::PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
   for (const Distribution::Bin& bin : distribution.bins) {
     measured.x.push_back(bin.at);
     measured.y.push_back(bin.measured);
@@ -20,9 +20,9 @@ PlotSeries measured_in(const Distribution& distribution, const std::string& when
 }
 
 /// Simulated density, without bins that hardly any recording would fill: there are many simulations.
-PlotSeries simulated_in(const Distribution& distribution) {
+plot::PlotSeries simulated_in(const Distribution& distribution) {
   constexpr double kHardlyAny = 0.1;  // of the density of a single residual
-  PlotSeries simulated{.name = "simulated", .x = {}, .y = {}, .joined = false};
+  plot::PlotSeries simulated{.name = "simulated", .x = {}, .y = {}, .joined = false};
   for (const Distribution::Bin& bin : distribution.bins) {
     if (bin.simulated < kHardlyAny * distribution.single) continue;
     simulated.x.push_back(bin.at);
@@ -38,14 +38,14 @@ bool measures_same(const Distribution& one, const Distribution& other) {
 
 }  // namespace
 
-Plot distribution_plot(const std::string& name, const Distribution& before, const Distribution* after) {
+plot::Plot distribution_plot(const std::string& name, const Distribution& before, const Distribution* after) {
   const bool is_extended = after && !measures_same(before, *after);
-  Plot plot{.title = fmt::format("{}: standardized residuals, RMS {:.2f} (simulated {:.2f})", name,
-                                 before.measured_rms, before.simulated_rms),
-            .x_label = "residual [standard deviations of the noise]",
-            .y_label = "density, logarithmic",
-            .series = {measured_in(before, is_extended ? " before" : ""), simulated_in(before)},
-            .y_scale = PlotScale::logarithmic};
+  plot::Plot plot{.title = fmt::format("{}: standardized residuals, RMS {:.2f} (simulated {:.2f})", name,
+                                       before.measured_rms, before.simulated_rms),
+                  .x_label = "residual [standard deviations of the noise]",
+                  .y_label = "density, logarithmic",
+                  .series = {measured_in(before, is_extended ? " before" : ""), simulated_in(before)},
+                  .y_scale = plot::PlotScale::logarithmic};
   if (is_extended) {
     plot.title += fmt::format(", then {:.2f}", after->measured_rms);
     plot.series.push_back(measured_in(*after, " after"));
@@ -53,4 +53,4 @@ Plot distribution_plot(const std::string& name, const Distribution& before, cons
   return plot;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,12 +6,12 @@
 #include "pipeline/plot/plot.hpp"
 #include "plugins/diagnose/model/residual_histogram.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Density plot of one laser's standardized residuals, with bars of ± 2 standard errors: measured, simulated,
 /// and measured with the extended model.
 ///
 /// @param after  null, or equal to `before`, if the model was not extended; it is left out then
-Plot distribution_plot(const std::string& name, const Distribution& before, const Distribution* after);
+plot::Plot distribution_plot(const std::string& name, const Distribution& before, const Distribution* after);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

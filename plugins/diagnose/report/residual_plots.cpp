@@ -11,13 +11,13 @@
 #include "pipeline/data/shown_unit.hpp"
 #include "plugins/diagnose/report/residual_density_plot.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Display unit of a covariate; ranges stay in metres.
-ShownUnit unit_of_axis(const std::string& unit) {
-  if (unit == "rad") return {.factor = 1 / kDegree, .name = "deg"};
-  if (unit == "rad/s") return {.factor = 1 / kDegree, .name = "deg/s"};
+data::ShownUnit unit_of_axis(const std::string& unit) {
+  if (unit == "rad") return {.factor = 1 / data::kDegree, .name = "deg"};
+  if (unit == "rad/s") return {.factor = 1 / data::kDegree, .name = "deg/s"};
   return {.name = unit};
 }
 
@@ -29,8 +29,8 @@ const Profile* find_profile(const ProfileComparison& all, std::size_t laser, con
 }
 
 /// Labels of the bins where the covariate is categorical.
-std::vector<PlotKind> kinds_in(const Profile& profile, const std::vector<std::string>& lasers) {
-  std::vector<PlotKind> kinds;
+std::vector<plot::PlotKind> kinds_in(const Profile& profile, const std::vector<std::string>& lasers) {
+  std::vector<plot::PlotKind> kinds;
   const auto add = [&](const std::string& name) {
     kinds.push_back({.at = static_cast<double>(kinds.size() + 1), .name = name});
   };
@@ -41,12 +41,12 @@ std::vector<PlotKind> kinds_in(const Profile& profile, const std::vector<std::st
   return kinds;
 }
 
-void add_profile(const Profile& profile, const std::string& when, Plot& plot) {
+void add_profile(const Profile& profile, const std::string& when, plot::Plot& plot) {
   constexpr double kBar = 2;  // standard errors
   constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
   const double factor = unit_of_axis(profile.unit).factor;
-  PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
-  PlotSeries simulated{.name = "simulated" + when, .x = {}, .y = {}, .joined = false};
+  plot::PlotSeries measured{.name = "measured" + when, .x = {}, .y = {}};
+  plot::PlotSeries simulated{.name = "simulated" + when, .x = {}, .y = {}, .joined = false};
   const auto add = [&](double x, const Profile::Bin& bin) {
     measured.x.push_back(x);
     measured.y.push_back(1e3 * bin.measured);
@@ -64,7 +64,7 @@ void add_profile(const Profile& profile, const std::string& when, Plot& plot) {
 }
 
 std::string size_in_words(const Profile& profile) {
-  return fmt::format("{:.2f} mm ({})", 1e3 * profile.rms, chance_in_words(profile.p_value));
+  return fmt::format("{:.2f} mm ({})", 1e3 * profile.rms, data::chance_in_words(profile.p_value));
 }
 
 bool is_same(const Profile& one, const Profile& other) {
@@ -73,10 +73,10 @@ bool is_same(const Profile& one, const Profile& other) {
   });
 }
 
-Plot profile_plot(const std::string& name, const Profile& before, const Profile* after,
-                  const std::vector<std::string>& lasers) {
-  const ShownUnit unit = unit_of_axis(before.unit);
-  Plot plot{
+plot::Plot profile_plot(const std::string& name, const Profile& before, const Profile* after,
+                        const std::vector<std::string>& lasers) {
+  const data::ShownUnit unit = unit_of_axis(before.unit);
+  plot::Plot plot{
       .title = fmt::format("{} against {}: {}", name, before.covariate, size_in_words(before)),
       .x_label = unit.name.empty() ? before.covariate : fmt::format("{} [{}]", before.covariate, unit.name),
       .y_label = "mean residual [mm]",
@@ -98,10 +98,10 @@ const Distribution* find_distribution(const ProfileComparison& all, std::size_t 
 
 }  // namespace
 
-std::vector<Plot> residual_plots(std::size_t laser, const std::vector<std::string>& lasers,
-                                 const ProfileComparison& before, const ProfileComparison& after) {
+std::vector<plot::Plot> residual_plots(std::size_t laser, const std::vector<std::string>& lasers,
+                                       const ProfileComparison& before, const ProfileComparison& after) {
   const std::string name = laser == kAllLasers ? "scanner" : lasers.at(laser);
-  std::vector<Plot> plots;
+  std::vector<plot::Plot> plots;
   if (const Distribution* own = find_distribution(before, laser))
     plots.push_back(distribution_plot(name, *own, find_distribution(after, laser)));
   for (const Profile& profile : before.profiles) {
@@ -111,4 +111,4 @@ std::vector<Plot> residual_plots(std::size_t laser, const std::vector<std::strin
   return plots;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 #include "pipeline/statistics/monte_carlo_test.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 /// Share of times within a quarter interval after the previous one.
@@ -43,15 +43,15 @@ Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double
   bursts.longest = *most - *least;
 
   constexpr std::size_t kShuffles = 999;
-  RandomStream random(seed, "bursts");
+  statistics::RandomStream random(seed, "bursts");
   const auto permuted = [&] {
     random.shuffle(delays);
     std::vector<double> times;
     for (std::size_t k = 0; k < stamps.size(); ++k) times.push_back(stamps[k] + delays[k]);
     return share_together(std::move(times), bursts.interval);
   };
-  bursts.p_value = monte_carlo_test(bursts.together, kShuffles, permuted).p_value;
+  bursts.p_value = statistics::monte_carlo_test(bursts.together, kShuffles, permuted).p_value;
   return bursts;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Bursts in the receipt times of scans that were taken at even intervals.
 struct Bursts {
@@ -24,4 +24,4 @@ struct Bursts {
 Bursts find_bursts(const std::vector<double>& receipts, const std::vector<double>& stamps,
                    std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -7,7 +7,7 @@
 #include "plugins/diagnose/scans/interleave.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kNearNeighbours = 0.15;  // [m] largest difference between neighbouring compared beams
@@ -87,7 +87,7 @@ double best_shift(const Comparison& comparison, const std::vector<std::size_t>& 
 double mean_of(const Profile& errors, const std::vector<std::size_t>& picked) {
   std::vector<double> values;
   for (const auto i : picked) values.push_back(errors[i]);
-  return median_in_place(values);
+  return statistics::median_in_place(values);
 }
 
 double rms(const Profile& errors, const std::vector<std::size_t>& picked) {
@@ -110,7 +110,7 @@ void weigh(const Comparison& comparison, ClassOffset& class_offset) {
   for (std::size_t i = 0; i < plain.size(); ++i) {
     ratios.push_back(plain[i] / comparison.reference(comparison.beams()[i]));
   }
-  const double scale = median_in_place(ratios);
+  const double scale = statistics::median_in_place(ratios);
   Profile less_offset = plain;
   Profile less_scale = plain;
   for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -134,7 +134,7 @@ Gain judge(const Comparison& held_out, double shift, std::uint64_t seed) {
             .unit = "m",
             .before = rms(before, all),
             .after = rms(after, all)};
-  gain.ci95 = bootstrap(held_out.size(), kBlock, seed, kDraws, [&](const auto& picked) {
+  gain.ci95 = statistics::bootstrap(held_out.size(), kBlock, seed, kDraws, [&](const auto& picked) {
                 return rms(after, picked) - rms(before, picked);
               }).ci95;
   return gain;
@@ -189,14 +189,16 @@ std::vector<ClassOffset> compare_classes(const std::vector<SeriesScan>& scans, s
     constexpr std::size_t kMin = 20;
     if (found.size() < kMin) continue;
     class_offset.shift = best_shift(found, beams);
-    class_offset.shift_error = bootstrap(found.size(), kBlock, seed, kDraws, [&](const auto& picked) {
-                                 return best_shift(found, picked);
-                               }).std_error;
+    class_offset.shift_error =
+        statistics::bootstrap(found.size(), kBlock, seed, kDraws, [&](const auto& picked) {
+          return best_shift(found, picked);
+        }).std_error;
     const Profile left = found.errors(class_offset.shift);
     class_offset.offset = mean_of(left, beams);
-    class_offset.offset_error = bootstrap(found.size(), kBlock, seed, kDraws, [&](const auto& picked) {
-                                  return mean_of(left, picked);
-                                }).std_error;
+    class_offset.offset_error =
+        statistics::bootstrap(found.size(), kBlock, seed, kDraws, [&](const auto& picked) {
+          return mean_of(left, picked);
+        }).std_error;
     weigh(found, class_offset);
     for (const auto& errors : found.over_shifts())
       class_offset.error_over_shift.push_back(rms(errors, beams));
@@ -209,4 +211,4 @@ std::vector<ClassOffset> compare_classes(const std::vector<SeriesScan>& scans, s
   return all;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

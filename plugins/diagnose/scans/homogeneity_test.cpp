@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 HomogeneityTest homogeneity_test(std::vector<ValueWithError> values, Level level, std::size_t blocks) {
   std::erase_if(values, [](const auto& value) { return !std::isfinite(value.first) || !(value.second > 0); });
@@ -35,4 +35,4 @@ HomogeneityTest homogeneity_test(std::vector<ValueWithError> values, Level level
   return about;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// An estimate and its standard error.
 using ValueWithError = std::pair<double, double>;
@@ -27,4 +27,4 @@ struct HomogeneityTest {
 /// are not finite are left out.
 HomogeneityTest homogeneity_test(std::vector<ValueWithError> values, Level level, std::size_t blocks);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "plugins/diagnose/scans/lag_contrast.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kStillDiffers = 0.2;  // largest share of the contrast at the period
@@ -56,4 +56,4 @@ std::size_t reference_class(const std::vector<SeriesScan>& scans, std::size_t pe
   return best;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include "plugins/diagnose/scans/scan_series.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Period of the scan classes of a stationary laser.
 struct ScanInterleave {
@@ -55,4 +55,4 @@ std::vector<ClassOffset> compare_classes(const std::vector<SeriesScan>& scans, s
 /// The reference class: that with the most beams.
 std::size_t reference_class(const std::vector<SeriesScan>& scans, std::size_t period);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

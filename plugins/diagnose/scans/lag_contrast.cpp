@@ -9,7 +9,7 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kClip = 0.3;  // [m]
@@ -102,13 +102,13 @@ std::vector<std::vector<std::size_t>> LagContrast::groups(const std::vector<std:
   return all;
 }
 
-MonteCarloTest LagContrast::permutation_test(std::uint64_t seed,
-                                             const std::vector<std::size_t>& kinds) const {
+statistics::MonteCarloTest LagContrast::permutation_test(std::uint64_t seed,
+                                                         const std::vector<std::size_t>& kinds) const {
   const std::vector<double> between = matrix();
   const auto alike = groups(kinds);
-  RandomStream random(seed, "lags");
+  statistics::RandomStream random(seed, "lags");
   std::vector<std::size_t> order(rows_.size());
-  return monte_carlo_test(contrast(), kShuffles, [&] {
+  return statistics::monte_carlo_test(contrast(), kShuffles, [&] {
     for (const auto& places : alike) {
       auto scans = places;
       random.shuffle(scans);
@@ -119,4 +119,4 @@ MonteCarloTest LagContrast::permutation_test(std::uint64_t seed,
   });
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

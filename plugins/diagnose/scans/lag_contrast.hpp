@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/monte_carlo_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Largest lag between compared stationary scans; a larger gap separates stationary phases.
 inline constexpr std::size_t kMaxLags = 8;
@@ -26,7 +26,8 @@ class LagContrast {
 
   /// Permutation test of the contrast [m]: permutes the scans' order within each stationary phase.
   /// @param kinds  scan class of each scan, within which scans are exchangeable; empty: one class
-  MonteCarloTest permutation_test(std::uint64_t seed, const std::vector<std::size_t>& kinds = {}) const;
+  statistics::MonteCarloTest permutation_test(std::uint64_t seed,
+                                              const std::vector<std::size_t>& kinds = {}) const;
 
  private:
   struct Pair {
@@ -47,4 +48,4 @@ class LagContrast {
 /// The largest number less the smallest; 0 without numbers.
 double contrast_of(const std::vector<double>& by_lag);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

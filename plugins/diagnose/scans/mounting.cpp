@@ -9,7 +9,7 @@
 #include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr Eigen::Index kGlobal = kMountingParameters;
@@ -203,7 +203,7 @@ double noise_between_scans(const FlatWindow& window) {
     last = sight.range;
   }
   constexpr double kSecond = 2.449489742783178;  // √6
-  return median_in_place(second) * kMadToSigma / kSecond;
+  return statistics::median_in_place(second) * statistics::kMadToSigma / kSecond;
 }
 
 /// Whether the window is flat, with an optical centre of its own.
@@ -301,9 +301,10 @@ MountingFit fit_mounting(const std::vector<FlatWindow>& windows, const MountingV
   fit.rms = std::sqrt(now.squares / static_cast<double>(fit.beams));
   constexpr std::size_t kDrawsOfWindows = 300;
   for (const auto parameter : free) {
-    fit.std_errors[parameter] = bootstrap(windows.size(), 1, seed, kDrawsOfWindows, [&](const auto& picked) {
-                                  return step_of(picked)(parameter);
-                                }).std_error;
+    fit.std_errors[parameter] =
+        statistics::bootstrap(windows.size(), 1, seed, kDrawsOfWindows, [&](const auto& picked) {
+          return step_of(picked)(parameter);
+        }).std_error;
   }
   return fit;
 }
@@ -319,4 +320,4 @@ std::vector<FlatWindow> with_injected(const std::vector<FlatWindow>& windows, Mo
   return changed;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

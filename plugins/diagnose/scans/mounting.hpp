@@ -9,7 +9,7 @@
 
 #include "plugins/diagnose/scans/passes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Beam directions of a laser whose scan plane contains the tilt axis.
 struct FanGeometry {
@@ -60,4 +60,4 @@ MountingFit fit_mounting(const std::vector<FlatWindow>& windows, const MountingV
 std::vector<FlatWindow> with_injected(const std::vector<FlatWindow>& windows, MountingParameter parameter,
                                       double by);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

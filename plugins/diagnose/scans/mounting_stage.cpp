@@ -10,8 +10,10 @@
 #include "pipeline/data/degree.hpp"
 #include "pipeline/data/rig_echoes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using data::kDegree;
 
 constexpr double kShortestSweep = 5 * kDegree;
 constexpr double kInjectedOffset = 0.03;  // [m]
@@ -107,7 +109,7 @@ void DiagnoseMountingStage::process(const Inputs& in, Outputs&, Context& context
   if (const Findings* before = in.find<Findings>()) findings_.append(*before);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
   if (auto scan = in.share<Scan>(); scan && scan->laser == 0)
-    series_.add(with_used_echoes(std::move(scan), context.rig()));
+    series_.add(data::with_used_echoes(std::move(scan), context.rig()));
 }
 
 void DiagnoseMountingStage::diagnose(Findings& findings, Context& context) const {
@@ -171,4 +173,4 @@ void DiagnoseMountingStage::finish(Outputs& out, Context& context) {
   if (!context.interrupted()) out.give(std::move(findings_));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 
 #include "plugins/diagnose/scans/mounting.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.mounting`: tests whether a sweep identifies the offset of the optical centre from the
 /// axis.
@@ -25,4 +25,4 @@ class DiagnoseMountingStage final : public Stage {
   Findings findings_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,13 +6,13 @@
 
 #include "plugins/diagnose/scans/homogeneity_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
-FitTest score_test(const char* covariate, const std::vector<ValueWithError>& values, Level level,
-                   std::size_t blocks) {
+data::FitTest score_test(const char* covariate, const std::vector<ValueWithError>& values, Level level,
+                         std::size_t blocks) {
   const HomogeneityTest about = homogeneity_test(values, level, blocks);
-  FitTest test{.covariate = covariate, .quantity = "plate angle", .unit = "rad"};
+  data::FitTest test{.covariate = covariate, .quantity = "plate angle", .unit = "rad"};
   if (!about.compared) return test;
   test.amplitude = std::sqrt(std::max(0.0, about.beyond)) / 2;
   test.p_value = about.p_value;
@@ -21,13 +21,14 @@ FitTest score_test(const char* covariate, const std::vector<ValueWithError>& val
 
 }  // namespace
 
-GoodnessOfFit pass_fit_test(const PassOffset& shift, bool is_removed) {
+data::GoodnessOfFit pass_fit_test(const PassOffset& shift, bool is_removed) {
   const auto tests = [&](Level level, const ValueWithError& in_all) {
-    return corrected({score_test("plate angle", shift.by_angle, level, kPassBlocks / shift.by_angle.size()),
-                      score_test("mirror angle", shift.by_beam, level, kPassBlocks / shift.by_beam.size()),
-                      score_test("direction of the actuator", {in_all}, Level::kZero, kPassBlocks)});
+    return data::corrected(
+        {score_test("plate angle", shift.by_angle, level, kPassBlocks / shift.by_angle.size()),
+         score_test("mirror angle", shift.by_beam, level, kPassBlocks / shift.by_beam.size()),
+         score_test("direction of the actuator", {in_all}, Level::kZero, kPassBlocks)});
   };
-  const FitStatistics plain = tests(Level::kZero, {shift.shift, shift.std_error});
+  const data::FitStatistics plain = tests(Level::kZero, {shift.shift, shift.std_error});
   if (!is_removed) return {.scope = "plate", .before = plain, .after = plain};
   const auto [fitted, fitted_error] = shift.fitted;
   const auto [other, other_error] = shift.held_out;
@@ -35,4 +36,4 @@ GoodnessOfFit pass_fit_test(const PassOffset& shift, bool is_removed) {
   return {.scope = "plate", .before = plain, .after = tests(Level::kMean, left)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

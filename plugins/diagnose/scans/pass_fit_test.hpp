@@ -4,7 +4,7 @@
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/passes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Goodness-of-fit test of two passes against the model of an actuator without hysteresis. It tests the shift
 /// between the passes in total, and in each quarter of the angles and of the beams (F test, since errors come
@@ -13,6 +13,6 @@ namespace crisp {
 /// direction, half the shift between them.
 ///
 /// @param is_removed  whether the shift was accepted and removed
-GoodnessOfFit pass_fit_test(const PassOffset& shift, bool is_removed);
+data::GoodnessOfFit pass_fit_test(const PassOffset& shift, bool is_removed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -9,7 +9,7 @@
 #include "plugins/diagnose/scans/homogeneity_test.hpp"
 #include "plugins/diagnose/scans/passes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr int kAroundLeast = 4;  // [steps] support of the cubic fit on either side
@@ -38,7 +38,7 @@ double least_around(const Curve& curve, double centre, double step) {
   Eigen::Vector4d values = Eigen::Vector4d::Zero();
   for (const auto& [by, variance] : curve) {
     const double x = (by - centre) / step;
-    const double weight = biweight(x / (kAroundLeast + 1));
+    const double weight = statistics::biweight(x / (kAroundLeast + 1));
     const Eigen::Vector4d powers(1, x, x * x, x * x * x);
     squares += weight * powers * powers.transpose();
     values += weight * variance * powers;
@@ -70,12 +70,12 @@ std::vector<std::size_t> every(const PassComparison& comparison, const auto& req
 
 double error_of_shift(const PassComparison& comparison, const std::vector<std::size_t>& blocks,
                       std::uint64_t seed) {
-  return bootstrap(blocks.size(), 1, seed, kDrawsOfBlocks,
-                   [&](const std::vector<std::size_t>& picked) {
-                     std::vector<std::size_t> drawn;
-                     for (const auto i : picked) drawn.push_back(blocks[i]);
-                     return shift_between(comparison, drawn);
-                   })
+  return statistics::bootstrap(blocks.size(), 1, seed, kDrawsOfBlocks,
+                               [&](const std::vector<std::size_t>& picked) {
+                                 std::vector<std::size_t> drawn;
+                                 for (const auto i : picked) drawn.push_back(blocks[i]);
+                                 return shift_between(comparison, drawn);
+                               })
       .std_error;
 }
 
@@ -120,12 +120,13 @@ Gain gain_of(const PassComparison& comparison, std::uint64_t seed) {
             .unit = "m",
             .before = std::sqrt(variance_at(comparison, held_out, 0)),
             .after = std::sqrt(variance_at(comparison, held_out, shift))};
-  gain.ci95 =
-      bootstrap(held_out.size(), 1, seed, kDrawsOfBlocks, [&](const std::vector<std::size_t>& picked) {
-        std::vector<std::size_t> drawn;
-        for (const auto i : picked) drawn.push_back(held_out[i]);
-        return change(drawn);
-      }).ci95;
+  gain.ci95 = statistics::bootstrap(held_out.size(), 1, seed, kDrawsOfBlocks,
+                                    [&](const std::vector<std::size_t>& picked) {
+                                      std::vector<std::size_t> drawn;
+                                      for (const auto i : picked) drawn.push_back(held_out[i]);
+                                      return change(drawn);
+                                    })
+                  .ci95;
   return gain;
 }
 
@@ -193,4 +194,4 @@ PassOffset find_shift(const Pass& up, const Pass& down, std::uint64_t seed) {
   return found;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

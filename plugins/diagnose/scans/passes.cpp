@@ -9,7 +9,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kNoEdgeOnTheWay = 0.15;  // [m]
@@ -20,7 +20,7 @@ double median_step(const Pass& pass) {
     const double step = pass.scans[i].angle - pass.scans[i - 1].angle;
     if (step > 0) steps.push_back(step);
   }
-  return median_in_place(steps);
+  return statistics::median_in_place(steps);
 }
 
 /// [rad] Fractional step between the angle grids of the upward and the downward pass, at most half a step.
@@ -135,4 +135,4 @@ PassComparison compare_passes(const Pass& up, const Pass& down, double injected)
   return comparison;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

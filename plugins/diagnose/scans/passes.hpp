@@ -11,7 +11,7 @@
 
 #include "plugins/diagnose/scans/scan_series.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// One scan of a pass at its actuator angle.
 struct PassScan {
@@ -92,4 +92,4 @@ struct PassOffset {
 /// Estimates the shift between two passes and tests it.
 PassOffset find_shift(const Pass& up, const Pass& down, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,8 +11,10 @@
 #include "plugins/diagnose/scans/homogeneity_test.hpp"
 #include "plugins/diagnose/scans/pass_fit_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
+
+using data::kDegree;
 
 constexpr double kStandsOut = 3;         // standard errors
 constexpr double kInhomogeneous = 0.01;  // p-value below which the shift is not homogeneous
@@ -149,7 +151,7 @@ PlateTrajectory without_offset(const PlateTrajectory& plate, double shift) {
 }
 
 /// The estimated shift, with ± 2 standard errors.
-PlotMark mark_of(const PassOffset& found) {
+plot::PlotMark mark_of(const PassOffset& found) {
   return {
       .at = found.shift / kDegree,
       .around = std::isfinite(found.std_error) ? 2 * found.std_error / kDegree : 0,
@@ -159,10 +161,10 @@ PlotMark mark_of(const PassOffset& found) {
 
 void draw(const std::filesystem::path& folder, const std::string& laser, const PassComparison& comparison,
           const PassOffset& found, Context& context) {
-  Plot plot{.title = laser + ": downward against upward pass",
-            .x_label = "shift between the passes [deg]",
-            .y_label = "standard deviation of the differences [mm]",
-            .marks = {mark_of(found)}};
+  plot::Plot plot{.title = laser + ": downward against upward pass",
+                  .x_label = "shift between the passes [deg]",
+                  .y_label = "standard deviation of the differences [mm]",
+                  .marks = {mark_of(found)}};
   std::vector<std::size_t> all;
   for (std::size_t b = 0; b < comparison.blocks.size(); ++b) all.push_back(b);
   constexpr std::size_t kQuarters = 4;
@@ -171,14 +173,14 @@ void draw(const std::filesystem::path& folder, const std::string& laser, const P
     for (const auto b : all) {
       if (q == kQuarters || comparison.blocks[b].angle_part * kQuarters / kAngleParts == q) some.push_back(b);
     }
-    PlotSeries series{.name = q == kQuarters ? "all" : fmt::format("quarter {} of the angles", q + 1)};
+    plot::PlotSeries series{.name = q == kQuarters ? "all" : fmt::format("quarter {} of the angles", q + 1)};
     for (int k = -kReach; k <= kReach; ++k) {
       series.x.push_back(k * comparison.step / kDegree);
       series.y.push_back(1e3 * std::sqrt(variance_at(comparison, some, k * comparison.step)));
     }
     plot.series.push_back(std::move(series));
   }
-  write_plots(folder / (laser + "_passes.svg"), {plot}, context);
+  plot::write_plots(folder / (laser + "_passes.svg"), {plot}, context);
 }
 
 }  // namespace
@@ -204,7 +206,7 @@ void DiagnosePassesStage::process(const Inputs& in, Outputs&, Context& context) 
   if (auto plate = in.share<PlateTrajectory>()) plate_ = std::move(plate);
   if (const auto* reading = in.find<PlateReading>()) series_.add(*reading);
   if (auto scan = in.share<Scan>(); scan && scan->laser == 0)
-    series_.add(with_used_echoes(std::move(scan), context.rig()));
+    series_.add(data::with_used_echoes(std::move(scan), context.rig()));
   if (auto beams = in.share<Measurements>()) beams_.push_back(std::move(beams));
 }
 
@@ -235,8 +237,8 @@ double DiagnosePassesStage::diagnose(Findings& findings, Context& context) const
   add_findings(name, found, findings);
   const bool generalizes = is_credible(found) && stands_out(found) && found.gain.significant_decrease();
   if (is_credible(found)) {
-    add_fit_statistics({pass_fit_test(found, generalizes)}, findings);
-    context.print(fit_statistics_text(findings));
+    data::add_fit_statistics({pass_fit_test(found, generalizes)}, findings);
+    context.print(data::fit_statistics_text(findings));
   }
   findings.unobservable.push_back(
       {name + ".tau",
@@ -256,4 +258,4 @@ void DiagnosePassesStage::finish(Outputs& out, Context& context) {
   for (const auto& beams : beams_) out.give(beams);
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -12,7 +12,7 @@
 
 #include "plugins/diagnose/scans/passes.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Text report of the comparison of two passes; numbers that were not estimated are "unknown".
 ///
@@ -40,4 +40,4 @@ class DiagnosePassesStage final : public Stage {
   std::vector<std::shared_ptr<const Measurements>> beams_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

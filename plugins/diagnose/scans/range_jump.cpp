@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kMinHits = 10;
@@ -25,7 +25,7 @@ std::optional<double> jump_behind(const std::vector<SeriesScan>& scans, std::siz
     jumps.push_back((r[2] - r[1]) - ((r[1] - r[0]) + (r[3] - r[2])) / 2);
   }
   if (jumps.size() < std::max<std::size_t>(kMinHits, scans[i].ranges().size() / 4)) return {};
-  return median_in_place(jumps);
+  return statistics::median_in_place(jumps);
 }
 
 }  // namespace
@@ -38,4 +38,4 @@ std::optional<double> largest_jump(const std::vector<SeriesScan>& scans) {
   return largest;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 
 #include "plugins/diagnose/scans/scan_series.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// [m] Largest common-mode change of the ranges between consecutive scans: median over the beams, less half
 /// of the changes before and after it. It is the detection limit of a range step.
@@ -15,4 +15,4 @@ namespace crisp {
 /// @return       empty without four scans in which ten beams, and a quarter of them, have echoes
 std::optional<double> largest_jump(const std::vector<SeriesScan>& scans);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 #include "plugins/diagnose/scans/stationary_stage.hpp"
 #include "plugins/diagnose/scans/sweep_stage.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 void register_scans(Registrar& registrar) {
   registrar.stage<DiagnoseStationaryStage>();
@@ -15,4 +15,4 @@ void register_scans(Registrar& registrar) {
   registrar.stage<DiagnoseMountingStage>();
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -3,9 +3,9 @@
 
 #include <crisp/registrar.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// diagnose.stationary, diagnose.sweep, diagnose.passes and diagnose.mounting.
 void register_scans(Registrar& registrar);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

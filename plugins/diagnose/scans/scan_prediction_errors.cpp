@@ -8,7 +8,7 @@
 #include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kFar = 2;                     // scans on either side that select the beams
@@ -80,7 +80,7 @@ std::optional<std::array<double, 2 * kFar + 1>> weights_around(const PlateTrajec
 double ScanPredictionErrors::median() const {
   std::vector<double> all;
   for (const auto& of_scan : errors) all.insert(all.end(), of_scan.begin(), of_scan.end());
-  return median_in_place(all);
+  return statistics::median_in_place(all);
 }
 
 ScanPredictionErrors scan_prediction_errors(const std::vector<SeriesScan>& scans,
@@ -152,7 +152,7 @@ Gain prediction_gain(const ScanPredictionErrors& before, const ScanPredictionErr
       old_errors.insert(old_errors.end(), old_ones.begin(), old_ones.end());
       new_errors.insert(new_errors.end(), new_ones.begin(), new_ones.end());
     }
-    return std::pair(median_in_place(old_errors), median_in_place(new_errors));
+    return std::pair(statistics::median_in_place(old_errors), statistics::median_in_place(new_errors));
   };
   std::vector<std::size_t> all(both.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -161,11 +161,11 @@ Gain prediction_gain(const ScanPredictionErrors& before, const ScanPredictionErr
             .unit = "m",
             .before = old_median,
             .after = new_median};
-  gain.ci95 = bootstrap(both.size(), kBlockOfScans, seed, kDrawsOfScans, [&](const auto& picked) {
+  gain.ci95 = statistics::bootstrap(both.size(), kBlockOfScans, seed, kDrawsOfScans, [&](const auto& picked) {
                 const auto [old_drawn, new_drawn] = medians(picked);
                 return new_drawn - old_drawn;
               }).ci95;
   return gain;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

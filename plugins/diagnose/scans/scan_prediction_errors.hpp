@@ -9,7 +9,7 @@
 
 #include "plugins/diagnose/scans/scan_series.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Prediction errors of scans from their neighbours [m].
 struct ScanPredictionErrors {
@@ -53,4 +53,4 @@ std::vector<ScanScore> scan_scores(const std::vector<SeriesScan>& scans, const s
 Gain prediction_gain(const ScanPredictionErrors& before, const ScanPredictionErrors& after,
                      std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

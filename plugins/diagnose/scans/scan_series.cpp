@@ -9,7 +9,7 @@
 
 #include <crisp/error.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 double ScanSeries::since_first(std::int64_t ns) {
   if (!first_ns_) first_ns_ = ns;
@@ -83,4 +83,4 @@ std::vector<double> ScanSeries::stamped(const ClockMap& map) const {
   return times;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -12,7 +12,7 @@
 #include <crisp/rig.hpp>
 #include <crisp/scan.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// One received scan of a series.
 struct SeriesScan {
@@ -57,4 +57,4 @@ class ScanSeries {
 /// There is nothing to diagnose.
 Error no_actuated_scans();
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

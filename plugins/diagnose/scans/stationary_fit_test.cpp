@@ -13,7 +13,7 @@
 #include "plugins/diagnose/scans/lag_contrast.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 using Row = std::vector<double>;
@@ -66,7 +66,7 @@ double noise_of(const std::vector<Row>& rows, const Row& profile) {
       if (std::isfinite(row[k] - profile[k])) sizes.push_back(std::abs(row[k] - profile[k]));
     }
   }
-  return kMadToSigma * median_in_place(sizes);
+  return statistics::kMadToSigma * statistics::median_in_place(sizes);
 }
 
 /// Beams around which the profile is straight within its noise.
@@ -201,7 +201,7 @@ class Simulation {
   }
   /// Draws permuted, sign-flipped noise of the measured scans. Sampling without replacement avoids identical
   /// scans.
-  std::vector<StationaryPhase> draw(RandomStream& random) {
+  std::vector<StationaryPhase> draw(statistics::RandomStream& random) {
     std::vector<StationaryPhase> made = phases_;
     for (std::size_t r = 0; r < made.size(); ++r) {
       for (auto& of_class : noise_[r]) random.shuffle(of_class);
@@ -226,40 +226,41 @@ class Simulation {
   std::vector<std::vector<std::vector<Row>>> noise_;  ///< by stationary phase and class
 };
 
-FitStatistics test(double amplitude, double p_value) {
-  return corrected({{.covariate = "count of scans",
-                     .quantity = "range",
-                     .unit = "m",
-                     .amplitude = std::max(0.0, amplitude),
-                     .p_value = p_value}});
+data::FitStatistics test(double amplitude, double p_value) {
+  return data::corrected({{.covariate = "count of scans",
+                           .quantity = "range",
+                           .unit = "m",
+                           .amplitude = std::max(0.0, amplitude),
+                           .p_value = p_value}});
 }
 
-FitStatistics with_interleave(const std::vector<StationaryPhase>& phases, std::size_t reference,
-                              const std::vector<bool>& is_moved, std::uint64_t seed) {
+data::FitStatistics with_interleave(const std::vector<StationaryPhase>& phases, std::size_t reference,
+                                    const std::vector<bool>& is_moved, std::uint64_t seed) {
   const InterleaveModel found = fitted(phases, reference, is_moved);
   const Left left = left_of(phases, &found);
   const double seen = left.lags.contrast();
   Simulation simulation(phases, found);
-  RandomStream random(seed, "scans");
-  const auto between_kinds = monte_carlo_test(seen, kSimulations, [&] {
+  statistics::RandomStream random(seed, "scans");
+  const auto between_kinds = statistics::monte_carlo_test(seen, kSimulations, [&] {
     const std::vector<StationaryPhase> made = simulation.draw(random);
     const InterleaveModel again = fitted(made, reference, is_moved);
     return left_of(made, &again).lags.contrast();
   });
   const auto within_kinds = left.lags.permutation_test(seed, left.kinds);
   return test(seen - std::min(between_kinds.mean, within_kinds.mean),
-              sidak_p_value(2, std::min(between_kinds.p_value, within_kinds.p_value)));
+              statistics::sidak_p_value(2, std::min(between_kinds.p_value, within_kinds.p_value)));
 }
 
 }  // namespace
 
-std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
-                                                 const std::vector<SeriesScan>& scans,
-                                                 const ScanInterleave& interleave,
-                                                 const std::vector<bool>& is_moved, std::uint64_t seed) {
+std::optional<data::GoodnessOfFit> stationary_fit_test(const std::string& laser,
+                                                       const std::vector<SeriesScan>& scans,
+                                                       const ScanInterleave& interleave,
+                                                       const std::vector<bool>& is_moved,
+                                                       std::uint64_t seed) {
   if (std::ranges::find(is_moved, true) == is_moved.end()) {
-    const FitStatistics alike = test(interleave.beyond_chance, interleave.p_value);
-    return GoodnessOfFit{.scope = laser, .before = alike, .after = alike};
+    const data::FitStatistics alike = test(interleave.beyond_chance, interleave.p_value);
+    return data::GoodnessOfFit{.scope = laser, .before = alike, .after = alike};
   }
   const std::size_t reference = reference_class(scans, interleave.period);
   const auto some = std::span(scans).first(std::min(kEnoughStationary, scans.size()));
@@ -272,9 +273,9 @@ std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
   if (beams < kMinBeams) return {};
   const LagContrast plain = left_of(phases, nullptr).lags;
   const auto chance = plain.permutation_test(seed);
-  return GoodnessOfFit{.scope = laser,
-                       .before = test(plain.contrast() - chance.mean, chance.p_value),
-                       .after = with_interleave(phases, reference, is_moved, seed)};
+  return data::GoodnessOfFit{.scope = laser,
+                             .before = test(plain.contrast() - chance.mean, chance.p_value),
+                             .after = with_interleave(phases, reference, is_moved, seed)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

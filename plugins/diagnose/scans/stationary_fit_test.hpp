@@ -9,7 +9,7 @@
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/interleave.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Goodness-of-fit test of stationary scans against the model of identical scans with independent noise: a
 /// permutation test of the contrast between lags (LagContrast).
@@ -25,9 +25,9 @@ namespace crisp {
 /// @param scans     of the stationary laser, in order
 /// @param is_moved  per scan class: whether its shift was accepted
 /// @return empty with too few beams or scans for the test
-std::optional<GoodnessOfFit> stationary_fit_test(const std::string& laser,
-                                                 const std::vector<SeriesScan>& scans,
-                                                 const ScanInterleave& interleave,
-                                                 const std::vector<bool>& is_moved, std::uint64_t seed);
+std::optional<data::GoodnessOfFit> stationary_fit_test(const std::string& laser,
+                                                       const std::vector<SeriesScan>& scans,
+                                                       const ScanInterleave& interleave,
+                                                       const std::vector<bool>& is_moved, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

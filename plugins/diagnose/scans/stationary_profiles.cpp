@@ -6,7 +6,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 std::vector<double> row_of(const SeriesScan& scan) {
   std::vector<double> row(scan.ranges().begin(), scan.ranges().end());
@@ -34,7 +34,7 @@ std::vector<double> mean_profile(const std::vector<std::vector<double>>& rows) {
       if (k < row.size() && std::isfinite(row[k])) values.push_back(row[k]);
     }
     if (values.empty() || 2 * values.size() < rows.size()) continue;
-    const double middle = median_in_place(values);
+    const double middle = statistics::median_in_place(values);
     double sum = 0;
     double n = 0;
     for (const double value : values) {
@@ -58,4 +58,4 @@ double at_beam(const std::vector<double>& profile, double beam) {
   return (1 - on) * profile[k] + on * profile[k + 1];
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

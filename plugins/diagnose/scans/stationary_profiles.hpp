@@ -5,7 +5,7 @@
 
 #include "plugins/diagnose/scans/scan_series.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Scan class of a scan: its count modulo the period.
 inline std::size_t class_of(const SeriesScan& scan, std::size_t period) {
@@ -24,4 +24,4 @@ std::vector<double> row_of(const SeriesScan& scan);
 /// The profile at a fractional beam index, interpolated linearly; NaN outside.
 double at_beam(const std::vector<double>& profile, double beam);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

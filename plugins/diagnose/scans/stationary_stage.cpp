@@ -11,7 +11,7 @@
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 #include "plugins/diagnose/scans/stationary_profiles.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kMinStationary = 24;  // scans
@@ -91,7 +91,7 @@ void DiagnoseStationaryStage::process(const Inputs& in, Outputs&, Context& conte
     for (auto& laser : lasers_) laser.series.add(*reading);
     items_.emplace_back(*reading);
   }
-  if (auto scan = with_used_echoes(in.share<Scan>(), context.rig())) {
+  if (auto scan = data::with_used_echoes(in.share<Scan>(), context.rig())) {
     if (scan->echoes.empty() || scan->echoes.front().ranges.empty()) {
       context.count("scans without ranges");
       return;
@@ -134,15 +134,15 @@ void DiagnoseStationaryStage::report(const std::string& name, const ScanInterlea
 void DiagnoseStationaryStage::draw(const std::string& name, const std::vector<ClassOffset>& class_offsets,
                                    Context& context) const {
   if (!folder_ || class_offsets.empty()) return;
-  Plot plot{.title = name + ", stationary: difference between scan classes",
-            .x_label = "shift of the class's beams [beams]",
-            .y_label = "RMS difference of the profiles [mm]"};
+  plot::Plot plot{.title = name + ", stationary: difference between scan classes",
+                  .x_label = "shift of the class's beams [beams]",
+                  .y_label = "RMS difference of the profiles [mm]"};
   for (const auto& class_offset : class_offsets) {
-    PlotSeries series{.name = fmt::format("class {}", class_offset.kind), .x = shift_grid()};
+    plot::PlotSeries series{.name = fmt::format("class {}", class_offset.kind), .x = shift_grid()};
     for (const double error : class_offset.error_over_shift) series.y.push_back(1e3 * error);
     plot.series.push_back(std::move(series));
   }
-  write_plots(*folder_ / (name + "_rest.svg"), {plot}, context);
+  plot::write_plots(*folder_ / (name + "_rest.svg"), {plot}, context);
 }
 
 void DiagnoseStationaryStage::diagnose(std::size_t index, Findings& findings, Context& context) {
@@ -205,9 +205,9 @@ void DiagnoseStationaryStage::finish(Outputs& out, Context& context) {
     if (!lasers_[i].series.scans().empty()) diagnose(i, own, context);
     if (context.interrupted()) return;
   }
-  add_fit_statistics(reported_, own);
-  add_left_over(reported_, own);
-  if (!reported_.empty()) context.print(fit_statistics_text(own));
+  data::add_fit_statistics(reported_, own);
+  data::add_left_over(reported_, own);
+  if (!reported_.empty()) context.print(data::fit_statistics_text(own));
   findings_.append(own);
   out.give(std::move(findings_));
   for (const auto& item : items_) {
@@ -220,4 +220,4 @@ void DiagnoseStationaryStage::finish(Outputs& out, Context& context) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

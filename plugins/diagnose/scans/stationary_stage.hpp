@@ -12,7 +12,7 @@
 #include "plugins/diagnose/scans/interleave.hpp"
 #include "plugins/diagnose/scans/stationary_fit_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.stationary`: tests stationary scans for systematic differences between scan classes.
 class DiagnoseStationaryStage final : public Stage {
@@ -41,8 +41,8 @@ class DiagnoseStationaryStage final : public Stage {
   std::vector<Laser> lasers_;
   std::vector<std::variant<std::size_t, PlateReading>>
       items_;  ///< in order of receipt; index of a scan's laser
-  std::vector<GoodnessOfFit> reported_;
+  std::vector<data::GoodnessOfFit> reported_;
   Findings findings_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

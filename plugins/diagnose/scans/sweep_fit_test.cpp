@@ -8,7 +8,7 @@
 
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr std::size_t kStretch = 6;  // scans per block …
@@ -49,8 +49,8 @@ Course along(const std::vector<ScanScore>& scores, const std::vector<double>& la
   return course;
 }
 
-FitTest look_along(const Course& course, const std::string& covariate) {
-  FitTest test{.covariate = covariate, .quantity = "range", .unit = "m"};
+data::FitTest look_along(const Course& course, const std::string& covariate) {
+  data::FitTest test{.covariate = covariate, .quantity = "range", .unit = "m"};
   const double sum = std::accumulate(course.scores.begin(), course.scores.end(), 0.0);
   const double beyond = std::max(0.0, sum * sum - course.by_chance());
   if (course.squares > 0) test.amplitude = std::sqrt(beyond / (course.squares * course.beams));
@@ -63,7 +63,7 @@ std::vector<double> chances_of(const std::vector<Course>& courses, std::uint64_t
   std::vector<double> seen;
   for (const Course& course : courses) seen.push_back(course.size(signs));
   std::vector<double> chances(courses.size(), 1.0 / (kSweepDraws + 1));
-  RandomStream random(seed, "signs");
+  statistics::RandomStream random(seed, "signs");
   for (int i = 0; i < kSweepDraws; ++i) {
     for (double& sign : signs) sign = random.sign();
     double largest = 0;
@@ -77,16 +77,16 @@ std::vector<double> chances_of(const std::vector<Course>& courses, std::uint64_t
 
 }  // namespace
 
-std::optional<FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans,
-                                            const std::vector<ScanScore>& scores,
-                                            const std::vector<double>& delays, std::uint64_t seed) {
+std::optional<data::FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans,
+                                                  const std::vector<ScanScore>& scores,
+                                                  const std::vector<double>& delays, std::uint64_t seed) {
   std::vector<double> by_turns;
   for (const SeriesScan& scan : scans) by_turns.push_back(scan.count % 2 == 0 ? 1 : -1);
   const std::vector<Course> courses = {along(scores, delays), along(scores, by_turns)};
   if (courses.front().scores.size() < kMin) return {};
   const auto chances = chances_of(courses, seed);
-  FitStatistics reported{.tests = {look_along(courses[0], "receipt less stamp"),
-                                   look_along(courses[1], "count of scans modulo 2")}};
+  data::FitStatistics reported{.tests = {look_along(courses[0], "receipt less stamp"),
+                                         look_along(courses[1], "count of scans modulo 2")}};
   for (std::size_t k = 0; k < chances.size(); ++k) {
     reported.tests[k].p_value = std::min(1.0, chances[k]);
     reported.p_value = std::min(reported.p_value, reported.tests[k].p_value);
@@ -94,4 +94,4 @@ std::optional<FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans
   return reported;
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

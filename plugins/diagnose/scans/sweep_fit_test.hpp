@@ -8,7 +8,7 @@
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Tests the times of a sweep's scans by the score of their lags. A wrong time shifts a scan's ranges from
 /// their prediction by slope times lag. Two patterns of lags are tested, both independent of the ranges:
@@ -20,8 +20,8 @@ namespace crisp {
 /// @param scores  at the tested times
 /// @param delays  [s] of each scan of the series, up to sign and a constant
 /// @return empty with too few blocks for the test
-std::optional<FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans,
-                                            const std::vector<ScanScore>& scores,
-                                            const std::vector<double>& delays, std::uint64_t seed);
+std::optional<data::FitStatistics> sweep_fit_test(const std::vector<SeriesScan>& scans,
+                                                  const std::vector<ScanScore>& scores,
+                                                  const std::vector<double>& delays, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

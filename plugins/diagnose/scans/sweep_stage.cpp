@@ -11,7 +11,7 @@
 #include "plugins/diagnose/scans/range_jump.hpp"
 #include "plugins/diagnose/scans/sweep_fit_test.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kSure = 0.01;  // p-value
@@ -37,8 +37,8 @@ class Sweep {
     return scan_prediction_errors(series_.scans(), times, angles_, plate_);
   }
   /// Goodness of fit for receipt times, and for stamps if they were accepted.
-  std::optional<GoodnessOfFit> reported(const std::string& laser, const std::vector<double>& stamps,
-                                        bool by_stamp, std::uint64_t seed) const {
+  std::optional<data::GoodnessOfFit> reported(const std::string& laser, const std::vector<double>& stamps,
+                                              bool by_stamp, std::uint64_t seed) const {
     std::vector<double> delays = receipts_;
     for (std::size_t i = 0; i < delays.size(); ++i) delays[i] -= stamps[i];
     const auto requested = [&](const std::vector<double>& times) {
@@ -48,7 +48,7 @@ class Sweep {
     const auto before = requested(receipts_);
     const auto after = by_stamp ? requested(stamps) : before;
     if (!before || !after) return {};
-    return GoodnessOfFit{.scope = laser, .before = *before, .after = *after};
+    return data::GoodnessOfFit{.scope = laser, .before = *before, .after = *after};
   }
   InjectionResponse response(const std::vector<double>& times) const {
     constexpr double kStep = 0.004;  // [s]
@@ -142,14 +142,14 @@ void draw(const std::filesystem::path& folder, const std::string& laser, const I
     for (double& value : values) value *= 1e3;
     return values;
   };
-  Plot plot{.title = laser + ": prediction error of scans with injected lags",
-            .x_label = "injected lag [ms]",
-            .y_label = "median error [mm]"};
+  plot::Plot plot{.title = laser + ": prediction error of scans with injected lags",
+                  .x_label = "injected lag [ms]",
+                  .y_label = "median error [mm]"};
   plot.series = {{.name = "all scans later", .x = scaled(response.by), .y = scaled(response.common)},
                  {.name = "every other scan later, the rest earlier",
                   .x = scaled(response.by),
                   .y = scaled(response.by_turns)}};
-  write_plots(folder / (laser + "_sweep.svg"), {plot}, context);
+  plot::write_plots(folder / (laser + "_sweep.svg"), {plot}, context);
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ void DiagnoseSweepStage::process(const Inputs& in, Outputs&, Context& context) {
   if (const auto* reading = in.find<PlateReading>()) {
     for (auto& laser : lasers_) laser.add(*reading);
   }
-  if (auto scan = with_used_echoes(in.share<Scan>(), context.rig())) {
+  if (auto scan = data::with_used_echoes(in.share<Scan>(), context.rig())) {
     ScanSeries& laser = lasers_.at(scan->laser);
     laser.add(std::move(scan));
   }
@@ -223,11 +223,11 @@ void DiagnoseSweepStage::finish(Outputs& out, Context& context) {
     if (!lasers_[i].scans().empty()) diagnose(i, own, context);
     if (context.interrupted()) return;
   }
-  add_fit_statistics(reported_, own);
-  add_left_over(reported_, own);
-  if (!reported_.empty()) context.print(fit_statistics_text(own));
+  data::add_fit_statistics(reported_, own);
+  data::add_left_over(reported_, own);
+  if (!reported_.empty()) context.print(data::fit_statistics_text(own));
   findings_.append(own);
   out.give(std::move(findings_));
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

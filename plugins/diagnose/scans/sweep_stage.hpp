@@ -13,7 +13,7 @@
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stage `diagnose.sweep`: compares receipt times and device stamps of a sweep's scans.
 class DiagnoseSweepStage final : public Stage {
@@ -29,8 +29,8 @@ class DiagnoseSweepStage final : public Stage {
   std::optional<std::filesystem::path> folder_;
   std::vector<ScanSeries> lasers_;
   std::map<std::string, ClockMap> clocks_;
-  std::vector<GoodnessOfFit> reported_;
+  std::vector<data::GoodnessOfFit> reported_;
   Findings findings_;  // including those of earlier stages
 };
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -11,7 +11,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kSide = 0.1;   // [m] of a cell
@@ -26,7 +26,7 @@ Eigen::Vector3d vector_of(const PointsView& points, std::size_t i) {
 /// A surface with its known cells, in coordinates of its plane.
 class KnownSurface {
  public:
-  KnownSurface(const Surfel& surfel, const Surfels& all, const BeamsView& beams)
+  KnownSurface(const quality::Surfel& surfel, const quality::Surfels& all, const quality::BeamsView& beams)
       : surfel_(surfel),
         members_(all.beams_of(surfel)),
         weights_(std::span(all.weights).subspan(surfel.begin, members_.size())) {
@@ -50,7 +50,7 @@ class KnownSurface {
     }
   }
 
-  const Surfel& surfel() const { return surfel_; }
+  const quality::Surfel& surfel() const { return surfel_; }
   Eigen::Vector2d foot(const Eigen::Vector3d& point) const {
     return {surfel_.u.dot(point - surfel_.middle), surfel_.v.dot(point - surfel_.middle)};
   }
@@ -87,7 +87,7 @@ class KnownSurface {
     return along(at.x() - least_.x()) < columns_ && cell(at) < counts_.size();
   }
 
-  Surfel surfel_;
+  quality::Surfel surfel_;
   std::span<const std::uint32_t> members_;  // ascending
   std::span<const double> weights_;         // of the members
   Eigen::Vector2d least_ = Eigen::Vector2d::Zero();
@@ -107,7 +107,7 @@ void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size
   double nearest = std::numeric_limits<double>::infinity();
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-    const Surfel& surfel = surfaces[s].surfel();
+    const quality::Surfel& surfel = surfaces[s].surfel();
     const double cosine = -surfel.normal.dot(ray.direction);
     if (cosine < kAlong) continue;
     const double there = surfel.normal.dot(ray.origin - surfel.middle) / cosine;
@@ -124,7 +124,7 @@ void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size
     if (may_be_ahead && surfaces[s].is_well_inside(foot, static_cast<std::uint32_t>(i), ray.end)) {
       nearest = there;
       association.ahead[i] = s;
-      association.place[i] = kPlacesOfEach * s + place_on(surfel, foot);
+      association.place[i] = estimate::kPlacesOfEach * s + estimate::place_on(surfel, foot);
       association.error[i] = static_cast<float>(ray.range - there);
       association.cosine[i] = static_cast<float>(cosine);
     }
@@ -133,12 +133,12 @@ void follow(const Ray& ray, const std::vector<KnownSurface>& surfaces, std::size
 
 }  // namespace
 
-BeamAssociation associate_beams(const Surfels& surfels, const BeamsView& beams,
+BeamAssociation associate_beams(const quality::Surfels& surfels, const quality::BeamsView& beams,
                                 const std::vector<float>& ranges) {
   constexpr std::size_t kAtOnce = 4096;
   std::vector<KnownSurface> surfaces;
   surfaces.reserve(surfels.surfels.size());
-  for (const Surfel& surfel : surfels.surfels) surfaces.emplace_back(surfel, surfels, beams);
+  for (const quality::Surfel& surfel : surfels.surfels) surfaces.emplace_back(surfel, surfels, beams);
   const std::size_t n = ranges.size();
   BeamAssociation association;
   association.ahead.assign(n, kNoSurface);
@@ -147,7 +147,7 @@ BeamAssociation associate_beams(const Surfels& surfels, const BeamsView& beams,
   for (auto* values :
        {&association.error, &association.cosine, &association.distance, &association.end_cosine})
     values->assign(n, 0);
-  for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
+  quality::for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d direction = vector_of(beams.directions, i);
       const double range{ranges[i]};
@@ -165,7 +165,7 @@ double usual_error(const BeamAssociation& association) {
     if (association.ahead[i] != kNoSurface) sizes.push_back(std::abs(association.error[i]));
   }
   if (sizes.empty()) return 0;
-  return kMadToSigma * double{median_in_place(sizes)};
+  return statistics::kMadToSigma * double{statistics::median_in_place(sizes)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

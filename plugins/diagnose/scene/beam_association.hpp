@@ -8,7 +8,7 @@
 
 #include "pipeline/quality/surfels.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Stands for no surface in a BeamAssociation.
 inline constexpr std::uint32_t kNoSurface = ~std::uint32_t{0};
@@ -33,7 +33,7 @@ struct BeamAssociation {
 ///
 /// @param surfels  of these beams, not subsampled
 /// @param ranges   [m] of the beams, from their lasers
-BeamAssociation associate_beams(const Surfels& surfels, const BeamsView& beams,
+BeamAssociation associate_beams(const quality::Surfels& surfels, const quality::BeamsView& beams,
                                 const std::vector<float>& ranges);
 
 /// [m] Robust standard deviation of the errors: 1.48 times the median absolute error. 0 without errors.
@@ -44,4 +44,4 @@ inline bool are_neighbours(const Measurements& beams, std::size_t first, std::si
   return beams.laser[first] == beams.laser[second] && beams.beam[first] + 1 == beams.beam[second];
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

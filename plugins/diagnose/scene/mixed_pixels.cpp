@@ -10,7 +10,7 @@
 #include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kOnSurface = 4;  // standard deviations
@@ -34,10 +34,10 @@ class EdgeFinder {
   /// Whether the laser's noise next to the beam's surface could produce a mixed pixel.
   bool is_noisy(std::size_t i) const {
     constexpr double kMax = kClear / 4;  // [m] 4 σ errors are rare
-    const EchoConditions echo{.range = double{beams_.range[i]},
-                              .cosine = double{met_.end_cosine[i]},
-                              .remission = double{beams_.remission[i]}};
-    return deviation(noise_.size, echo) > kMax;
+    const model::EchoConditions echo{.range = double{beams_.range[i]},
+                                     .cosine = double{met_.end_cosine[i]},
+                                     .remission = double{beams_.remission[i]}};
+    return model::deviation(noise_.size, echo) > kMax;
   }
 
   /// Index of the first beam on the far side if an edge begins at `i`; otherwise `i`.
@@ -136,7 +136,7 @@ double Crossings::median_share() const {
   }
   std::vector<double> shares;
   for (const auto& [number, edge] : all) shares.insert(shares.end(), edge.crossings, edge.share());
-  return shares.empty() ? 0 : median_in_place(shares);
+  return shares.empty() ? 0 : statistics::median_in_place(shares);
 }
 
 Crossings crossings_of(std::size_t laser, const Measurements& beams, const PointsView& points,
@@ -171,8 +171,8 @@ std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& c
   constexpr std::size_t kDrawings = 999;
   const std::size_t n = crossings.mixed.size();
   if (n < kMin) return std::nullopt;
-  const Spread spread =
-      bootstrap(n, std::min(kTogether, n / 10), seed, kDrawings, [&](const std::vector<std::size_t>& drawn) {
+  const statistics::Spread spread = statistics::bootstrap(
+      n, std::min(kTogether, n / 10), seed, kDrawings, [&](const std::vector<std::size_t>& drawn) {
         const auto mixed = std::ranges::count_if(drawn, [&](std::size_t k) { return crossings.mixed[k]; });
         return static_cast<double>(mixed) / static_cast<double>(drawn.size());
       });
@@ -193,4 +193,4 @@ std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& c
                  .accepted = true};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -16,7 +16,7 @@
 #include "plugins/diagnose/noise/noise_model.hpp"
 #include "plugins/diagnose/scene/beam_association.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Point density: number of points near a position, in 27 cells of 4 cm.
 class PointDensity {
@@ -65,4 +65,4 @@ Crossings crossings_of(std::size_t laser, const Measurements& beams, const Point
 /// @return  a finding that is significant at p < 0.002, with the share of mixed crossings
 std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& crossings, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -6,7 +6,7 @@
 #include "pipeline/statistics/multiple_testing.hpp"
 #include "pipeline/statistics/random_stream.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 struct Shot {
@@ -24,7 +24,7 @@ class Grid {
   }
 
   /// Permutes the scans within each beam.
-  void scatter_randomly(RandomStream& random) {
+  void scatter_randomly(statistics::RandomStream& random) {
     const std::vector<Shot> before = std::move(shots_);
     shots_.clear();
     for (const Shot& shot : before) is_far_[index(shot)] = false;
@@ -99,7 +99,7 @@ class Grid {
 
 /// Permutation test: p-value of the number of clustered shots.
 double p_value_of(std::size_t together, Grid grid, std::size_t shuffles, std::uint64_t seed) {
-  RandomStream random(seed, "moving objects");
+  statistics::RandomStream random(seed, "moving objects");
   for (std::size_t shuffle = 0; shuffle < shuffles; ++shuffle) {
     grid.scatter_randomly(random);
     if (grid.together().size() >= together)
@@ -116,10 +116,11 @@ std::optional<MovingObjects> find_moving_objects(const FarShots& far, std::size_
   const Grid grid(far);
   const std::vector<Shot> shots = grid.together();
   if (shots.empty()) return std::nullopt;
-  MovingObjects result{.beams = std::vector<bool>(far.of_beam.size()),
-                       .share = static_cast<double>(shots.size()) / static_cast<double>(far.shots),
-                       .p_value = sidak_p_value(static_cast<double>(views),
-                                                p_value_of(shots.size(), grid, 1000 * views - 1, seed))};
+  MovingObjects result{
+      .beams = std::vector<bool>(far.of_beam.size()),
+      .share = static_cast<double>(shots.size()) / static_cast<double>(far.shots),
+      .p_value = statistics::sidak_p_value(static_cast<double>(views),
+                                           p_value_of(shots.size(), grid, 1000 * views - 1, seed))};
   if (!(result.p_value < kByChance)) return std::nullopt;
   std::vector<bool> covered(far.of_beam.size());
   for (const Shot& shot : shots) {
@@ -147,4 +148,4 @@ Finding finding_of(const MovingObjects& moved) {
           .accepted = true};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -8,7 +8,7 @@
 
 #include <crisp/findings.hpp>
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Outlying ranges of a stationary laser, by beam.
 struct FarShots {
@@ -37,4 +37,4 @@ std::optional<MovingObjects> find_moving_objects(const FarShots& far, std::size_
 /// The finding scene.moving, of the same form as for a turning scanner.
 Finding finding_of(const MovingObjects& moved);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

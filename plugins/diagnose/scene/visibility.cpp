@@ -10,7 +10,7 @@
 #include "pipeline/statistics/random_stream.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -41,9 +41,9 @@ class RepeatGrid {
       before->second = state->angle;
     }
     if (turned.empty()) return;
-    const double side = std::max(kNarrowest, median_in_place(turned));
+    const double side = std::max(kNarrowest, statistics::median_in_place(turned));
     columns_ = std::max<std::size_t>(1, static_cast<std::size_t>(kTurn / side));
-    half_turn_ = std::numbers::pi / std::max(1e-3, median_in_place(rates));
+    half_turn_ = std::numbers::pi / std::max(1e-3, statistics::median_in_place(rates));
     start_ = std::ranges::min(beams.time);
     whens_ = 1 + static_cast<std::size_t>((std::ranges::max(beams.time) - start_) / half_turn_);
     lasers_ = std::size_t{std::ranges::max(beams.laser)} + 1;
@@ -177,7 +177,7 @@ std::size_t hidden_together(const ChangingDirections& directions) {
   return count;
 }
 
-void shuffle_times(RandomStream& random, std::vector<Visibility>& views) {
+void shuffle_times(statistics::RandomStream& random, std::vector<Visibility>& views) {
   std::vector<std::size_t> known;
   for (std::size_t when = 0; when < views.size(); ++when) {
     if (views[when] != Visibility::kNone) known.push_back(when);
@@ -214,13 +214,13 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed) {
   const auto together = [](const ChangingDirections& some) {
     return static_cast<double>(hidden_together(some));
   };
-  RandomStream random(seed, "visibility");
+  statistics::RandomStream random(seed, "visibility");
   ChangingDirections shuffled = directions;
   const auto permuted = [&] {
     for (auto& views : shuffled.views) shuffle_times(random, views);
     return together(shuffled);
   };
-  return monte_carlo_test(together(directions), kShuffles, permuted).p_value;
+  return statistics::monte_carlo_test(together(directions), kShuffles, permuted).p_value;
 }
 
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed) {
@@ -243,4 +243,4 @@ std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_
                  .accepted = true};
 }
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

@@ -13,7 +13,7 @@
 
 #include "plugins/diagnose/scene/beam_association.hpp"
 
-namespace crisp {
+namespace crisp::diagnose {
 
 /// Visibility of the surface in one direction at one time.
 enum class Visibility : std::uint8_t { kNone, kSurface, kHidden };
@@ -45,4 +45,4 @@ double p_value(const ChangingDirections& directions, std::uint64_t seed);
 ///          0.05 % of the beams
 std::optional<Finding> moving(const ChangingDirections& directions, std::uint64_t seed);
 
-}  // namespace crisp
+}  // namespace crisp::diagnose

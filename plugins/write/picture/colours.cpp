@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crisp {
+namespace crisp::write {
 
 PictureRgb ramp_colour(double share) {
   const double at = std::clamp(share, 0.0, 1.0) * (kRamp.size() - 1);
@@ -18,4 +18,4 @@ PictureRgb ramp_colour(double share) {
   return colour;
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace crisp {
+namespace crisp::write {
 
 using PictureRgb = std::array<std::uint8_t, 3>;
 
@@ -32,4 +32,4 @@ inline constexpr std::array<PictureRgb, 9> kRamp{{{68, 1, 84},
 /// @param share  0 to 1 along the ramp; what lies beyond has the colour of its end
 PictureRgb ramp_colour(double share);
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -10,7 +10,7 @@
 
 #include "plugins/write/picture/colours.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 constexpr std::uint32_t kGlyphWidth = 5, kGlyphHeight = 7;
@@ -122,4 +122,4 @@ void draw_colour_scale(Picture& picture, double low, double high, const std::str
   write_text(picture, left + width - std::min(width, width_of(last, dot)), bottom - 14 * dot, last);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

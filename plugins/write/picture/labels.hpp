@@ -5,7 +5,7 @@
 
 #include "plugins/write/picture/painter.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// Draws into the lower left corner a bar of a round length, at most a quarter of the picture wide, and its
 /// length; in pictures of 120 pixels or more.
@@ -16,4 +16,4 @@ void draw_scale_bar(Picture& picture, double across);
 /// @param unit  "m", "s" or nothing
 void draw_colour_scale(Picture& picture, double low, double high, const std::string& unit);
 
-}  // namespace crisp
+}  // namespace crisp::write

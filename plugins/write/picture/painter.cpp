@@ -14,7 +14,7 @@
 #include "plugins/write/picture/labels.hpp"
 #include "plugins/write/picture/projection.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 /// 0 to 1: full for four points in a pixel.
@@ -60,8 +60,8 @@ std::array<double, 2> limits_of(const PicturePoints& points, const PictureProjec
     if (std::isfinite(point.value) && projection.pixel(point)) values.push_back(point.value);
   }
   if (values.empty()) return {0, 1};
-  const double low{quantile_in_place(values, 0.01)};
-  return {low, std::max(double{quantile_in_place(values, 0.99)}, low + 1e-9)};
+  const double low{statistics::quantile_in_place(values, 0.01)};
+  return {low, std::max(double{statistics::quantile_in_place(values, 0.99)}, low + 1e-9)};
 }
 
 void paint_values(Picture& picture, const PicturePoints& points, const PictureProjection& projection,
@@ -124,4 +124,4 @@ std::string as_png(const Picture& picture) {
               "reduce width and height");
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

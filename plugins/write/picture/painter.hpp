@@ -8,7 +8,7 @@
 #include "plugins/write/picture/points.hpp"
 #include "plugins/write/picture/settings.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// Rows from top to bottom, of pixels with 8 bits of red, green and blue each.
 struct Picture {
@@ -27,4 +27,4 @@ Picture paint(const PicturePoints& points, const PictureSettings& settings);
 /// The picture as a PNG file's bytes.
 std::string as_png(const Picture& picture);
 
-}  // namespace crisp
+}  // namespace crisp::write

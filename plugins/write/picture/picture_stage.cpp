@@ -8,7 +8,7 @@
 #include "plugins/write/parts_options.hpp"
 #include "plugins/write/picture/painter.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 void WritePictureStage::describe(StageDescription<WritePictureStage>& d) {
   using Settings = PictureSettings;
@@ -87,4 +87,4 @@ void WritePictureStage::finish(Outputs&, Context& context) {
   context.wrote(file_);
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

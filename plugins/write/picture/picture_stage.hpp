@@ -11,7 +11,7 @@
 #include "plugins/write/picture/points.hpp"
 #include "plugins/write/picture/settings.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// `write.picture`: all clouds that come, drawn into one PNG.
 class WritePictureStage final : public Stage {
@@ -31,4 +31,4 @@ class WritePictureStage final : public Stage {
   std::optional<PicturePoints> points_;
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

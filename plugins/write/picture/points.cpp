@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace crisp {
+namespace crisp::write {
 
 PicturePoints::PicturePoints(PictureColour colour, std::size_t most) : colour_(colour), most_(most) {}
 
@@ -40,4 +40,4 @@ void PicturePoints::add(const Cloud& cloud) {
   }
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -9,7 +9,7 @@
 
 #include "plugins/write/picture/settings.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// A point to draw, in the plate's frame.
 struct PicturePoint {
@@ -38,4 +38,4 @@ class PicturePoints {
   std::optional<double> first_;  // [s since the Unix epoch] of the first point
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

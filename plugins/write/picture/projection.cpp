@@ -7,7 +7,7 @@
 
 #include "pipeline/statistics/robust_estimators.hpp"
 
-namespace crisp {
+namespace crisp::write {
 namespace {
 
 constexpr double kFieldOfView = 0.9;  // [rad] of the width, in perspective
@@ -42,7 +42,8 @@ struct Spread {
 
 Spread spread_of(std::vector<double>& values) {
   if (values.empty()) return {};
-  const double low = quantile_in_place(values, 0.01), high = quantile_in_place(values, 0.99);
+  const double low = statistics::quantile_in_place(values, 0.01),
+               high = statistics::quantile_in_place(values, 0.99);
   return {.centre = (low + high) / 2, .extent = high - low};
 }
 
@@ -113,4 +114,4 @@ std::optional<std::array<std::uint32_t, 2>> PictureProjection::pixel(const Pictu
   return std::array{static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)};
 }
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -8,7 +8,7 @@
 #include "plugins/write/picture/points.hpp"
 #include "plugins/write/picture/settings.hpp"
 
-namespace crisp {
+namespace crisp::write {
 
 /// From points in the plate's frame to pixels.
 class PictureProjection {
@@ -43,4 +43,4 @@ class PictureProjection {
 /// The smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below the value (> 0).
 double round_above(double value);
 
-}  // namespace crisp
+}  // namespace crisp::write

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace crisp {
+namespace crisp::write {
 
 /// From above, along +y, along −x (all in parallel projection), or in perspective.
 enum class PictureView { top, front, side, perspective };
@@ -25,4 +25,4 @@ struct PictureSettings {
   std::uint32_t height = 600;  ///< pixels
 };
 
-}  // namespace crisp
+}  // namespace crisp::write

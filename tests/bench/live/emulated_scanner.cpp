@@ -26,6 +26,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::simulate;
+
 /// Data sent faster than in real time are simulated beforehand.
 [[noreturn]] void send_all(const Trial& trial, const Rig& rig, int report) {
   RecordingSimulator simulator(recording_of(trial), office());

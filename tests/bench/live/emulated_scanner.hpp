@@ -22,11 +22,11 @@ struct Trial {
 /// The scanner's report when it has sent everything.
 struct Sent {
   std::uint64_t scans = 0, readings = 0;
-  EmulatedLedger ledger;
+  emulate::EmulatedLedger ledger;
 };
 
-RecordingSettings recording_of(const Trial& trial);
-EmulatedFaults faults_of(const Trial& trial);
+simulate::RecordingSettings recording_of(const Trial& trial);
+emulate::EmulatedFaults faults_of(const Trial& trial);
 /// The default rig at 127.0.0.1, at ports that nobody uses just now.
 Rig rig_with_free_ports();
 

@@ -39,6 +39,15 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::assemble;
+using namespace crisp::calibrate;
+using namespace crisp::capture;
+using namespace crisp::clock;
+using namespace crisp::emulate;
+using namespace crisp::live;
+using namespace crisp::record;
+using namespace crisp::simulate;
+using namespace crisp::write;
 namespace fs = std::filesystem;
 
 constexpr std::string_view kLive = R"(crisp: 1

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;

@@ -49,7 +49,7 @@ class BagFixture : public testing::Test {
   StageDriver run(std::map<std::string, OptionValue> options = {}) {
     write_rosbag1(folder_ / "a.bag", bag_, "none");
     options.emplace("file", OptionScalar((folder_ / "a.bag").string()));
-    auto stage = StageDriver::of<BagStage>(options);
+    auto stage = StageDriver::of<bag::BagStage>(options);
     stage.run().rig = rig_;
     stage.feed();
     return stage;

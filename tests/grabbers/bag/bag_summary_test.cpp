@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
+
 TEST(BagSummary, ReportsTopicsTypesRatesGapsAndClocks) {
   constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
   test::TestBag bag{.topics = {{"/scan", "sensor_msgs/LaserScan", test::kLaserScanDefinition},

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
 using test::kBegin;
 using test::kMs;
 using testing::ElementsAre;

@@ -17,6 +17,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
+using namespace crisp::table;
 namespace fs = std::filesystem;
 using test::StageDriver;
 

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
 using testing::ElementsAre;
 
 const std::string kDefinition =

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::bag;
 using testing::ElementsAre;
 
 constexpr std::int64_t kStamp = 1'700'000'000'987'654'321;

@@ -4,6 +4,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
+
 void put(Bytes& out, std::uint64_t value, std::size_t width, ByteOrder order) {
   for (std::size_t i = 0; i < width; ++i) {
     const auto shift = 8 * (order == ByteOrder::Big ? width - 1 - i : i);

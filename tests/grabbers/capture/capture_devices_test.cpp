@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
 using testing::ElementsAreArray;
 using testing::SizeIs;
 

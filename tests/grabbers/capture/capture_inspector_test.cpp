@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
 using testing::HasSubstr;
 
 TEST(CaptureInspector, RecognisesCapturesByTheirBegin) {

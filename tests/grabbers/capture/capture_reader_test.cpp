@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
 using testing::Contains;
 using testing::ElementsAreArray;
 using testing::SizeIs;

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
 using testing::AllOf;
 using testing::HasSubstr;
 

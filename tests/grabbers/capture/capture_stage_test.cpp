@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
 using testing::Contains;
 using testing::HasSubstr;
 

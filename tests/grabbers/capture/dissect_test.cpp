@@ -8,6 +8,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::devices;
+using namespace crisp::wire;
+
 Packet packet(ByteView bytes, std::uint32_t link_type) {
   return {.link_type = link_type, .original_size = static_cast<std::uint32_t>(bytes.size()), .bytes = bytes};
 }

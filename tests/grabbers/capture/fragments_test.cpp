@@ -9,6 +9,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::devices;
+using namespace crisp::wire;
+
 Bytes numbered(std::size_t n) {
   Bytes bytes(n);
   std::iota(bytes.begin(), bytes.end(), std::uint8_t{0});

@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
 using testing::ElementsAre;
 
 const Address kLaser6{"fe80::1", 2112}, kHub6{"fe80::64", 50000};

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+
 /// A capture of some thousand items: more than one batch.
 class ReadAheadTest : public testing::Test {
  protected:

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+
 std::string pop_all(ReorderBuffer<char>& buffer, std::int64_t limit_ns) {
   std::string items;
   while (const auto next = buffer.pop(limit_ns)) items += next->item;

@@ -12,6 +12,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::wire;
+
 std::int64_t scan_time(std::size_t laser, std::size_t k) {
   return kStart +
          (20 * static_cast<std::int64_t>(k) + 5 + 3 * static_cast<std::int64_t>(laser)) * kNsPerMillisecond;

@@ -15,7 +15,7 @@ struct Scenario {
   std::size_t scans = 10;
   std::size_t beams = 20;
   ColaLanguage language = ColaLanguage::B;
-  TcpSettings tcp;
+  capture::TcpSettings tcp;
   bool handshake = true;
   bool same_address = false;                         ///< the second laser has the first one's
   std::function<bool(std::size_t k)> is_unreadable;  ///< scan k of the second laser, by its channels
@@ -34,7 +34,7 @@ struct Reading {
   CaptureStatistics statistics;
   const DeviceStatistics& device(const std::string& name) const;
 };
-Reading read_capture(ByteView file, const CaptureSettings& settings = {});
+Reading read_capture(wire::ByteView file, const CaptureSettings& settings = {});
 Reading read_capture(const std::filesystem::path& file, const Rig& rig = default_rig(),
                      const CaptureSettings& settings = {});
 

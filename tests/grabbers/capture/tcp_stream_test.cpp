@@ -9,6 +9,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::devices;
+using namespace crisp::wire;
 using testing::ElementsAre;
 
 constexpr std::int64_t kWait = 1000;

@@ -11,6 +11,8 @@
 
 namespace crisp {
 
+using namespace crisp::wire;
+
 TemporaryFolder::TemporaryFolder() {
   std::string name = std::filesystem::temp_directory_path() / "crisp-test-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");

@@ -23,7 +23,7 @@ class TemporaryFolder {
 /// A file that is in memory only: thousands of them cost no disk.
 class MemoryFile {
  public:
-  explicit MemoryFile(ByteView bytes);
+  explicit MemoryFile(wire::ByteView bytes);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
@@ -33,7 +33,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-Bytes read_file(const std::filesystem::path& path);
-void write_file(const std::filesystem::path& path, ByteView bytes);
+wire::Bytes read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, wire::ByteView bytes);
 
 }  // namespace crisp

@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::devices;
+using namespace crisp::wire;
+
 /// The payload of a framed CoLa-B telegram: between start and length, and the checksum.
 ByteView payload_of(const Bytes& telegram) { return ByteView(telegram).subspan(8, telegram.size() - 9); }
 

@@ -6,6 +6,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
+using namespace crisp::devices;
+
 constexpr std::int64_t kInterval_us = 20'000;
 
 /// Item k of a device that has sent 50 a second since its clock began.

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::devices;
+
 constexpr double kTurn = 2 * std::numbers::pi;
 
 TEST(RotatingHead, ContinuesAzimuthsOverWholeTurns) {

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::devices;
+
 TEST(RoughClock, SeesAClockThatWasSetBack) {
   RoughClock watch;
   EXPECT_FALSE(watch.take({0, 3'000'000'000U}));

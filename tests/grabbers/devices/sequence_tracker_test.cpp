@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::devices;
+
 using Verdict = SequenceTracker::Verdict;
 
 constexpr std::int64_t kInterval = 2'000'000;  // 500 a second

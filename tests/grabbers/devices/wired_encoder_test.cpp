@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::devices;
 using testing::ElementsAre;
 
 Rig rig_with_encoder_of(std::uint16_t laser) {

@@ -15,6 +15,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::wire;
 namespace asio = boost::asio;
 using asio::ip::tcp;
 

@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::wire;
 using namespace std::string_literals;
 
 /// The answer to a request, without framing.

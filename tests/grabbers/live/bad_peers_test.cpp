@@ -18,6 +18,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::live;
+using namespace crisp::wire;
 using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
 using test::of;

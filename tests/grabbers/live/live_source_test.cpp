@@ -23,6 +23,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::emulate;
+using namespace crisp::live;
+using namespace crisp::simulate;
+using namespace crisp::wire;
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 

@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::live;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

@@ -56,7 +56,7 @@ struct VirtualClock {
 
 /// Waits until a device's statistics fulfil a condition.
 template <class Condition>
-bool comes_true(LiveSource& source, const std::string& device, const Condition& condition) {
+bool comes_true(live::LiveSource& source, const std::string& device, const Condition& condition) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < deadline) {
     const CaptureStatistics statistics = source.statistics();

@@ -12,6 +12,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::emulate;
+using namespace crisp::live;
+
 struct Model {
   std::string name;
   double frequency = 50;  ///< [Hz]

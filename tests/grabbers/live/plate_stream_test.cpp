@@ -20,6 +20,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::live;
+using namespace crisp::wire;
 namespace fs = std::filesystem;
 using boost::asio::ip::tcp;
 

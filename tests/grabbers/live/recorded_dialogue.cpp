@@ -13,6 +13,8 @@
 namespace crisp::test {
 namespace {
 
+using namespace crisp::wire;
+
 constexpr std::string_view kState = "SCdevicestate";
 
 bool is_request(std::string_view command) {

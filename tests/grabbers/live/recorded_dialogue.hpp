@@ -22,7 +22,7 @@ struct RecordedTelegram {
   double seconds = 0;
   bool to_device = false;
   std::string command, name;
-  Bytes bytes;  ///< with its framing
+  wire::Bytes bytes;  ///< with its framing
 };
 
 /// The telegrams of a dialogue that was converted to JSON, as data/sick/README.md describes it.
@@ -46,20 +46,20 @@ class RecordedDevice {
  private:
   void accept();
   void read();
-  void answer(const ColaTelegram& request);
+  void answer(const wire::ColaTelegram& request);
 
   ColaLanguage language_;
-  std::map<std::string, Bytes> answers_;  ///< by the request's name
-  Bytes refusal_;                         ///< empty where none was recorded
-  Bytes events_;
-  EmulatedDevice device_;
-  SickResponder responder_;
+  std::map<std::string, wire::Bytes> answers_;  ///< by the request's name
+  wire::Bytes refusal_;                         ///< empty where none was recorded
+  wire::Bytes events_;
+  emulate::EmulatedDevice device_;
+  emulate::SickResponder responder_;
 
   boost::asio::io_context context_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::ip::tcp::socket client_;
-  Bytes buffer_;
-  ColaFramer framer_;
+  wire::Bytes buffer_;
+  wire::ColaFramer framer_;
   std::thread thread_;
 };
 

@@ -21,6 +21,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clock;
+using namespace crisp::emulate;
+using namespace crisp::live;
+using namespace crisp::wire;
 namespace fs = std::filesystem;
 
 void expect_same(const Scan& a, const Scan& b) {

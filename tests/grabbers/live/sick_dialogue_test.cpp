@@ -11,6 +11,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::live;
+using namespace crisp::wire;
+
 using Effect = SickDialogue::Effect;
 
 Effect send(SickDialogue& dialogue, const std::string& answer) {

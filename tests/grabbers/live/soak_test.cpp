@@ -18,6 +18,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::live;
+using namespace crisp::simulate;
+
 constexpr double kSeconds = 12;
 
 /// By laser and ranges' hash: the hub times of a scan's first and last measurement.

@@ -16,6 +16,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd;
+using namespace crisp::pcd_grabber;
+using namespace crisp::write;
 namespace fs = std::filesystem;
 using test::sample_measurements;
 using test::sample_plate;

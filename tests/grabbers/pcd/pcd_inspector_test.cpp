@@ -10,6 +10,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd_grabber;
 using testing::HasSubstr;
 
 /// A cloud as another program writes it.

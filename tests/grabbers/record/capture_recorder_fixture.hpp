@@ -41,7 +41,7 @@ class CaptureRecorderTest : public testing::Test {
         const auto& other = std::get<std::shared_ptr<const Scan>>(written[i]);
         EXPECT_EQ((*scan)->laser, other->laser);
         EXPECT_EQ((*scan)->echoes.at(0).ranges, other->echoes.at(0).ranges);
-        EXPECT_EQ(to_scan_data(**scan), to_scan_data(*other));
+        EXPECT_EQ(wire::to_scan_data(**scan), wire::to_scan_data(*other));
       } else {
         const auto& reading = std::get<PlateReading>(read[i]);
         const auto& other = std::get<PlateReading>(written[i]);

@@ -23,6 +23,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::record;
+using namespace crisp::simulate;
+using namespace crisp::wire;
+
 TEST_F(CaptureRecorderTest, IsReadBackItemForItemWithItsTimes) {
   const auto items = test::simulated_items(0.5);
   CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});

@@ -16,6 +16,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::devices;
+using namespace crisp::record;
+using namespace crisp::wire;
+
 /// The items as they would have come an hour later.
 std::vector<HubItem> an_hour_later(const std::vector<HubItem>& items) {
   constexpr std::int64_t kHour = 3'600'000'000'000;

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 TEST(DeviceClock, RunsSlowByItsSkew) {
   // 100 ppm: 1.0001 hub seconds pass in a device second, so after 1000.1 s it has counted 1000.
   const DeviceClock clock{.start = 5, .skew = 1e-4};

@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 constexpr double kPeriod = 0.02;
 
 /// A scan every 20 ms by a clock that wraps soon, received 1 ms later; 1000 beams of 2 m, the first without

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
 using testing::HasSubstr;
 
 /// `{name: {parameter: value}}`, as if it stood in line 7 of a file.

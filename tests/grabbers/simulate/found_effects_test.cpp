@@ -16,6 +16,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 TEST(Link, DelaysByTheMinimumAndAnExponentialJitter) {
   Link link({.jitter = 1e-4, .stall_rate = 0, .seconds_per_byte = 0}, 2e-3, 1, "laser1");
   constexpr int kTelegrams = 20'000;

@@ -18,6 +18,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 std::vector<Revolution> turns(const MirrorSettings& settings, std::uint64_t seed, int n) {
   Mirror mirror(settings, seed, "laser1");
   std::vector<Revolution> result;

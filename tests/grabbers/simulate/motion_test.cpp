@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 constexpr double kTurn = 2 * std::numbers::pi;
 
 TEST(Motion, FollowsAHandWorkedRamp) {

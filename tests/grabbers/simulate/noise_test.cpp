@@ -12,6 +12,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::model;
+using namespace crisp::simulate;
+
 constexpr RangeSettings kPlain{.sigma = 0.012, .quantum = 0};
 using test::kDraws;
 using test::Moments;

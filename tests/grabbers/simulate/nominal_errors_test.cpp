@@ -13,6 +13,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
+
 TEST(DrawTruth, StaysWithinTheDeparturesAndKeepsTheGauge) {
   const Calibration nominal = nominal_calibration(default_rig());
   const NominalErrors nominal_errors{.tau = 0.02, .alpha = 3 * kDegree, .lambda = 5 * kDegree, .eta = 0.04};

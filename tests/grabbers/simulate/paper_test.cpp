@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 TEST(Paper, ItsBeamsLieInThePlatesPlaneAndGoRoundTheRoom) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto simulated = simulate_measurements(paper_scanner(seed), paper_room());

@@ -8,7 +8,7 @@
 namespace crisp::test {
 
 /// A direction, all equally likely; one number after the other, since arguments are evaluated in any order.
-inline Eigen::Vector3d random_direction(RandomStream& random) {
+inline Eigen::Vector3d random_direction(statistics::RandomStream& random) {
   const double z = random.normal();
   const double y = random.normal();
   const double x = random.normal();

@@ -17,6 +17,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+using namespace crisp::statistics;
 using Eigen::Vector3d;
 
 /// Möller and Trumbore's ray against a triangle; infinity for a miss.

@@ -18,6 +18,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
 using testing::HasSubstr;
 
 class RealDevicesTest : public testing::Test {

@@ -22,6 +22,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::simulate;
+using namespace crisp::wire;
 namespace fs = std::filesystem;
 
 class RecordedCaptureTest : public testing::Test {

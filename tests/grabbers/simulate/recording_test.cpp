@@ -18,6 +18,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
+using namespace crisp::wire;
+
 /// Clocks that run true and start at zero, delays without jitter, a mirror at its nominal rate.
 RecordingSettings plain_settings() {
   RecordingSettings settings;

@@ -19,6 +19,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
 namespace fs = std::filesystem;
 
 std::vector<HubItem> read_all(CaptureReader& reader) {

@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;

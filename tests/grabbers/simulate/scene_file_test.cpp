@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::simulate;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 

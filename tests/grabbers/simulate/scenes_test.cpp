@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+using namespace crisp::statistics;
 using Eigen::Vector3d;
 
 struct Views {

@@ -21,6 +21,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::simulate;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 

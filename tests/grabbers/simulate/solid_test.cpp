@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+using namespace crisp::statistics;
 using Eigen::Vector3d;
 
 constexpr double kYaw = 0.4;

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 constexpr NoiseEffects kLms{.divergence = 0.014, .aperture = 0.008};
 
 Surface wall(double x, double from_y, double to_y) {

@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 /// A twentieth of the way to the upper bound for sizes, the neutral value for forms.
 Effect moderate(const TermInfo& info) {
   Effect effect{.name = info.name, .owner = {}, .values = {}, .place = {}};

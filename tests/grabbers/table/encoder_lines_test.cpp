@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::table;
+using namespace crisp::wire;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;

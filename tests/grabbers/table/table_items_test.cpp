@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::table;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Pair;

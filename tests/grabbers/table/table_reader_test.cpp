@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::table;
 using testing::ElementsAre;
 using testing::FloatEq;
 using testing::IsEmpty;

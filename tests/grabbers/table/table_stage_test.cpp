@@ -19,6 +19,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::table;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;

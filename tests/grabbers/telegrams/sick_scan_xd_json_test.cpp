@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::telegrams;
 using testing::ElementsAre;
 using testing::Pair;
 

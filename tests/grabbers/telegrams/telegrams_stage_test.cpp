@@ -18,6 +18,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::telegrams;
+using namespace crisp::wire;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;

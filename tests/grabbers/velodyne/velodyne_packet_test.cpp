@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::velodyne;
+
 /// A packet as the manual draws it: block b at azimuth 100 + 40 b hundredths of a degree; laser 3 of the
 /// second firing of block 5 sees 1000 steps of 2 mm with intensity 77.
 std::vector<std::uint8_t> sample() {

@@ -15,6 +15,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::capture;
+using namespace crisp::velodyne;
+using namespace crisp::wire;
+
 constexpr double kBlock = 110.592e-6;                            // [s]
 constexpr double kTurnsASecond = 10;                             // of the head
 constexpr double kRate = -2 * std::numbers::pi * kTurnsASecond;  // [rad/s] of the plate

@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
 using namespace std::string_literals;
 
 TEST(ColaMessage, IsByteForByteWhatARealDriverSentToARealLms111) {

@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
 using testing::ElementsAre;
 
 void append(Bytes& stream, ByteView bytes) { stream.insert(stream.end(), bytes.begin(), bytes.end()); }

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 ByteView payload_b(ByteView frame) { return frame.subspan(8, frame.size() - 9); }
 
 TEST(Cola, ReadsTheLoginOfARealCapture) {

@@ -7,6 +7,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
 using testing::ElementsAre;
 
 std::vector<std::uint16_t> sequences(PlateFramer& framer, std::string_view text,

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 /// What the telegrams of one converted capture hold, read one after the other as one stream.
 struct Capture {
   std::size_t entries = 0;

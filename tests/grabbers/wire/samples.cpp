@@ -11,6 +11,8 @@
 
 namespace crisp {
 
+using namespace crisp::wire;
+
 Bytes from_hex(std::string_view hex) {
   std::string digits;
   for (const char c : hex) {

@@ -12,25 +12,25 @@
 namespace crisp {
 
 /// The bytes of "02 73 …"; white space is ignored.
-Bytes from_hex(std::string_view hex);
+wire::Bytes from_hex(std::string_view hex);
 
 /// A real telegram of tests/grabbers/wire/telegrams, framing included.
-Bytes real_telegram(std::string_view file);
+wire::Bytes real_telegram(std::string_view file);
 
 /// A telegram with every optional block, several encoders and channels; `seed` varies the values.
-ScanData full_scan_data(std::uint32_t seed);
+wire::ScanData full_scan_data(std::uint32_t seed);
 
 /// One telegram found in a stream, with bytes of its own.
 struct FoundTelegram {
   ColaLanguage language;
-  Bytes payload;
+  wire::Bytes payload;
   std::int64_t completed_ns;
   bool operator==(const FoundTelegram&) const = default;
 };
 
 /// What a framer finds in a stream fed in pieces of `piece` bytes, piece i arriving at time i; a gap at the
 /// end.
-std::vector<FoundTelegram> find_telegrams(ByteView stream, std::size_t piece = 1 << 20,
-                                          ColaFramer::Counts* counts = nullptr);
+std::vector<FoundTelegram> find_telegrams(wire::ByteView stream, std::size_t piece = 1 << 20,
+                                          wire::ColaFramer::Counts* counts = nullptr);
 
 }  // namespace crisp

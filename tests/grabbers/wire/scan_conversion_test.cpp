@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::wire;
 using testing::ElementsAre;
 using testing::FloatEq;
 

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
 using testing::ElementsAre;
 
 FieldFailure decode(const FoundTelegram& found, ScanData& data,

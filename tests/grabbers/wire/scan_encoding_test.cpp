@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 Scan decoded(const ScanData& data) {
   Scan scan;
   EXPECT_EQ(to_scan(data, 2, 77, scan), ScanFailure::None);

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 template <class T>
 T read(std::string_view text, FieldFailure expected = FieldFailure::None) {
   TextReader reader(text);

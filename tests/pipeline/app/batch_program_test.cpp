@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+using namespace crisp::files;
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -17,6 +17,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 namespace fs = std::filesystem;
 
 bool is_pipeline(const fs::path& file) {

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;

@@ -16,6 +16,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::stage;
+
 using Kind = RenamedName::Kind;
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

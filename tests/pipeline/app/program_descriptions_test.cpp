@@ -11,6 +11,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;

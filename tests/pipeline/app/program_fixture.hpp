@@ -95,7 +95,9 @@ class ProgramTest : public testing::Test {
     }
   }
 
-  std::string content(const std::string& name) const { return read_text_file(folder_ / name, 1 << 24); }
+  std::string content(const std::string& name) const {
+    return files::read_text_file(folder_ / name, 1 << 24);
+  }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(content(name)); }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 

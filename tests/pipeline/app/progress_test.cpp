@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+
 struct ProgressTest : testing::Test {
   double now = 100;
   std::ostringstream out;

@@ -11,6 +11,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 namespace fs = std::filesystem;
 
 /// The generated pages: the index, and those of stages, whose names have a dot ("filter.range.md").

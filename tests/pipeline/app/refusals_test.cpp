@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 

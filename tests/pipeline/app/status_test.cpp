@@ -15,6 +15,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using testing::HasSubstr;
 using testing::StartsWith;
 

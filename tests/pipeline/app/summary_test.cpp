@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
 using testing::EndsWith;
 
 RunRecord calibrated() {

@@ -15,6 +15,8 @@
 
 namespace crisp::toy {
 
+using namespace crisp::files;
+
 /// Writes the sum into a file, and adds a caveat if an option requests it.
 class WriteStage final : public Stage {
  public:

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+using namespace crisp::files;
 using testing::HasSubstr;
 
 class VerdictTest : public testing::Test {

@@ -17,6 +17,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 using testing::HasSubstr;
 
 /// Does what the job's name requests.

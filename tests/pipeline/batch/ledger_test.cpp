@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+
 using Kind = BatchEventKind;
 
 BatchEvent event(Kind kind, std::int64_t time, JobStatus status = JobStatus::done,

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 using testing::ElementsAre;
 
 std::vector<std::string> names_in(const std::filesystem::path& file, std::size_t* damaged = nullptr) {

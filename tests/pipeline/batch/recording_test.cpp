@@ -13,6 +13,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;

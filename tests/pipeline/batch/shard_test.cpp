@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+
 TEST(Shard, OfSeveralTakeEachNameOnceAndAboutAsMany) {
   constexpr std::uint64_t kCount = 7;
   std::map<std::uint64_t, int> taken;

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+
 std::map<std::string, const char*> environment;
 
 const char* variable(const char* name) {

@@ -13,6 +13,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 namespace fs = std::filesystem;
 
 void put_lines(const fs::path& output, const std::string& task, const std::string& lines) {

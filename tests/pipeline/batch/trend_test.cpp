@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -7,6 +7,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using namespace test;  // NOLINT(google-build-using-namespace)
 
 struct Distribution {

@@ -10,6 +10,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using namespace test;  // NOLINT(google-build-using-namespace)
 
 // (0, 1), (1, 0), (3, 1), (4, 3) make the lower hull of these; the mean of the times is 2.

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
+
 constexpr double kPeriod = 0.0201;  // [s]
 
 /// What a counter makes of stamps at even times, each off by some jitter and then changed by `change`.

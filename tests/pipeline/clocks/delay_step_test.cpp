@@ -10,6 +10,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using test::Delays;
 
 /// Stamps of 10 s at 50 Hz of a clock 80 ppm fast, of which those from `at` [s] on are later by `by` [s].

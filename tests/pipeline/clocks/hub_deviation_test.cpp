@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using test::Delays;
 using test::exponential_delays;
 using test::Random;

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
 using ::testing::Eq;
 using ::testing::Optional;
 

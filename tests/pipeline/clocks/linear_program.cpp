@@ -7,6 +7,8 @@
 namespace crisp::test {
 namespace {
 
+using namespace crisp::clocks;
+
 /// Index of the first stamp that a line of this slope touches from below.
 std::size_t touched_by(std::span<const Stamp> stamps, double slope) {
   const auto lower = [slope](const Stamp& a, const Stamp& b) {

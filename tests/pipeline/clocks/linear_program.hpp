@@ -11,6 +11,6 @@ namespace crisp::test {
 /// line's height at `center` below all stamps (Moon, Skelly, Towsley: Estimation and removal of clock skew
 /// from network delay measurements, INFOCOM 1999). It is solved in its dual, a concave function of the slope
 /// alone, by cutting planes, without a hull.
-ClockLine line_by_linear_program(std::span<const Stamp> stamps, double center);
+clocks::ClockLine line_by_linear_program(std::span<const clocks::Stamp> stamps, double center);
 
 }  // namespace crisp::test

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
+
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(Pauses, EndWithTheFirstItemAfterFiveSeconds) {

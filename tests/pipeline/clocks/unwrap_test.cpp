@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
+
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 32;
 
 std::uint32_t raw(std::int64_t us) { return static_cast<std::uint32_t>(us); }

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 using Numbers = std::vector<int>;
 
 TEST(Batcher, WorksOnEverythingInItsOrder) {

@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 constexpr double kStep = 2 * std::numbers::pi / 16384;
 
 struct Readings {

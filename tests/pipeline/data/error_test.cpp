@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 TEST(Error, HoldsMessageAndAdviceWithoutTheWordError) {
   EXPECT_STREQ(Error("there is no room", "make some").what(), "there is no room; make some");
   EXPECT_STREQ(Error("there is no room", {}, {"p.yaml", 3, 5}).what(), "p.yaml:3:5: error: there is no room");

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 TEST(FitStatistics, OfSeveralLasersTheWorstCountsAsOneOfThem) {
   const auto one = [](double before, double after) {
     return GoodnessOfFit{.scope = "laser1",

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 TEST(MirrorAngle, IsTheRemainderOfATurnToTheLastBit) {
   for (double angle = -25; angle < 25; angle += 0.0137) {
     const double expected =

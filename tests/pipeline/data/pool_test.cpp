@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 using Values = std::vector<int>;
 
 TEST(Pool, FillsAnewWhatNobodyHoldsAnyMore) {

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 /// Readings every 0.1 s from each begin on, for a second.
 PlateTrajectory plate_from(std::initializer_list<double> begins, std::vector<double> new_zeros = {}) {
   std::vector<double> times;

@@ -14,6 +14,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 constexpr double kNoise = 0.012;  // [m]
 const Eigen::Vector3d kLow(-3, -2, -1);
 const Eigen::Vector3d kHigh(4, 2.5, 1.8);

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double objective(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,

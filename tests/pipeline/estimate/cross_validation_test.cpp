@@ -10,6 +10,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 constexpr double kMostOfGood = 1.6;  // 11 parameters: 1 ± 0.2, less where both halves share errors
 constexpr auto kGoOn = [](int) { return true; };
 

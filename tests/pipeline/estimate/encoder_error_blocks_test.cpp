@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 /// Mean square of the mean rounding error [steps²] of readings at these angles [steps], by trying many places
 /// between two steps for the first.
 double mean_square_by_trial(const std::vector<double>& angles) {

@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
 using testing::ElementsAre;
 
 Measurements beams_of(const std::vector<std::uint16_t>& lasers) {

@@ -10,6 +10,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 SensorModel shifted(const SensorModel& model, double tau, double alpha, double eta) {
   SensorModel result = model;
   Eigen::VectorXd values = model.values();

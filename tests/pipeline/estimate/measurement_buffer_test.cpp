@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+
 std::shared_ptr<const PlateTrajectory> plate() {
   return std::make_shared<const PlateTrajectory>(7, std::vector<double>{0, 1, 2},
                                                  std::vector<double>{0, 1, 2}, 1.5);

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+
 const std::vector<std::string> kNames = {"laser1.eta", "laser1.tau", "laser2.lambda", "laser2.eta"};
 const std::vector<std::size_t> kFree = {1, 2, 3};
 const Eigen::Vector3d kPrior(0.1, 0.25, 0.1);

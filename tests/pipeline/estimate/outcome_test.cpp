@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;

@@ -18,6 +18,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 /// The second laser is twice as noisy, the third one's noise grows with range and incidence.
 ScannerSettings unequal(std::uint64_t seed, double duration) {
   ScannerSettings scanner = misplaced_scanner(seed, duration);

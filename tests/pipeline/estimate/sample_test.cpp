@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 const SimulatedMeasurements& recording() {
   static const auto kRecording = simulate_measurements(misplaced_scanner(1, 1.0), office());
   return kRecording;

@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The period of a recording in the office whose encoder reads other angles than the plate has.

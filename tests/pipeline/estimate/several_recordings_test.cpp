@@ -17,6 +17,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 /// The same scanner in office and hall.
 std::vector<SimulatedMeasurements> in_two_places() {
   const auto first = misplaced_scanner(1, 2.0);

@@ -19,6 +19,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 /// Two seconds of scans of one laser after the other, each of so many beams.
 Measurements scans_of(const std::vector<std::uint16_t>& beams) {
   Measurements all;

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+
 TEST(StandardErrors, BelowWhatTheBeamsAllowAreAFault) {
   Measurements beams;
   beams.range.assign(10000, 5.0F);

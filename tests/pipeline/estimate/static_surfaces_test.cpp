@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::quality;
 using testing::ElementsAre;
 
 constexpr double kRangeNoise = 0.01;

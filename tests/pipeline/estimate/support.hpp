@@ -15,8 +15,8 @@
 namespace crisp {
 
 /// A recording in the office whose truth is off the nominal rig by up to 2 cm, 3°, 5° (λ) and 40 ms.
-inline ScannerSettings misplaced_scanner(std::uint64_t seed, double duration) {
-  ScannerSettings scanner;
+inline simulate::ScannerSettings misplaced_scanner(std::uint64_t seed, double duration) {
+  simulate::ScannerSettings scanner;
   scanner.seed = seed;
   scanner.duration = duration;
   for (std::size_t i = 0; i < scanner.truth.lasers.size(); ++i) {
@@ -26,9 +26,9 @@ inline ScannerSettings misplaced_scanner(std::uint64_t seed, double duration) {
       const double u = static_cast<double>(seed * scanner.truth.lasers.size() + i + 1) * irrational;
       return 2 * (u - std::floor(u)) - 1;
     };
-    if (i > 0) laser.lambda.value += 5 * kDegree * at(std::numbers::phi);
+    if (i > 0) laser.lambda.value += 5 * data::kDegree * at(std::numbers::phi);
     laser.tau.value += 0.02 * at(std::numbers::sqrt2);
-    laser.alpha.value += 3 * kDegree * at(std::numbers::sqrt3);
+    laser.alpha.value += 3 * data::kDegree * at(std::numbers::sqrt3);
     laser.eta.value += 0.04 * at(std::numbers::e);
   }
   return scanner;
@@ -42,7 +42,7 @@ inline std::unique_ptr<Measure> rqe_measure() {
   return measures.make("rqe", {.search = "grid", .cutoff = 5}, searches);
 }
 
-inline Sample sample_of(const SimulatedMeasurements& simulated) {
+inline estimate::Sample sample_of(const simulate::SimulatedMeasurements& simulated) {
   return {.beams = simulated.beams, .plate = &simulated.plate};
 }
 

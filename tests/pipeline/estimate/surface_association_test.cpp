@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::quality;
+
 /// Beams from the origin at two walls that meet in the line x = 2, y = 2, with their noise of 12 mm.
 struct Corner {
   Vectors points, directions;

@@ -12,6 +12,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 SensorModel off_by(const Calibration& truth, double metres, double radians, double seconds) {
   SensorModel model(truth);
   Eigen::VectorXd values = model.values();

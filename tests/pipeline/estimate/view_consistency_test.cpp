@@ -10,6 +10,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
 using testing::AllOf;
 using testing::Field;
 using testing::HasSubstr;

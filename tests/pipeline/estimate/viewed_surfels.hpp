@@ -18,7 +18,7 @@ struct ViewedSurfels {
 
   /// Beams a millimetre apart.
   void add(const std::vector<Part>& parts) {
-    Surfel surfel{.middle = {0, 0, 0}, .normal = {0, 0, 1}, .u = {1, 0, 0}, .v = {0, 1, 0}};
+    quality::Surfel surfel{.middle = {0, 0, 0}, .normal = {0, 0, 1}, .u = {1, 0, 0}, .v = {0, 1, 0}};
     surfel.begin = static_cast<std::uint32_t>(surfels.members.size());
     for (const Part& part : parts) {
       for (int k = 0; k < part.beams; ++k) {
@@ -35,9 +35,11 @@ struct ViewedSurfels {
   }
 
   /// Directions are of no use.
-  BeamsView view() const { return {.points = points.view(), .directions = points.view(), .views = views}; }
+  quality::BeamsView view() const {
+    return {.points = points.view(), .directions = points.view(), .views = views};
+  }
 
-  Surfels surfels;
+  quality::Surfels surfels;
   Vectors points;
   std::vector<std::uint32_t> views;
 };

@@ -15,6 +15,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 SensorModel with_terms(Calibration calibration, const std::vector<std::string>& requested) {
   add_requested_terms(calibration, requested, built_in_terms());
   return SensorModel(calibration, built_in_terms());

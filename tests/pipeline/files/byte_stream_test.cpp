@@ -23,6 +23,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+
 std::string read_to_end(ByteStream& stream) {
   ByteStreamBuffer buffer(stream);
   std::istream in(&buffer);

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+
 Findings some_findings() {
   Findings findings{.before_p = 0.005, .after_p = 0.6};
   findings.findings.push_back(

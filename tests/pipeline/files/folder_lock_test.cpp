@@ -19,6 +19,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 namespace fs = std::filesystem;
 using std::chrono::hours;
 using std::chrono::milliseconds;

@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 using testing::Optional;
 
 TEST(NearestName, FindsTheNameThatWasMeant) {

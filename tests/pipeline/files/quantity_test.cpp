@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 using testing::HasSubstr;
 
 double value(std::string_view text, std::string_view unit) {

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::files;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

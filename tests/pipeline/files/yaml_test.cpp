@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;

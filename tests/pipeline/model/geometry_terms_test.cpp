@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 constexpr double kMrad = 1e-3;
 
 void expect_point(const Eigen::Vector3d& x, double a, double b, double c) {

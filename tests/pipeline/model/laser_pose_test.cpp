@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 // Ranges and mirror angles are stored as floats: 1e-6 is some of their steps at a few metres.
 
 Eigen::Vector3d point(const Calibration& calibration, const Measurements& beam,

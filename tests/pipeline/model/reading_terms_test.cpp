@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+
 /// By how much the term lengthens a range of r [m], for a beam that points down.
 double lengthened(const std::string& term, const std::map<std::string, double>& given, Measurements beam) {
   const auto x = point_with(term, given, one_laser(0, 0, 0), beam, turning_plate(0));

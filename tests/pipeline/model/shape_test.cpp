@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::model;
+
 constexpr int kCount = 8;
 
 double at(const Shape& shape, double x, const std::vector<double>& coefficients) {

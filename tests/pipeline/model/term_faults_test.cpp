@@ -10,6 +10,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::model;
 using testing::HasSubstr;
 using testing::IsEmpty;
 

@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd;
+
 /// liblzf is the judge.
 std::string expanded(const std::string& compressed, std::size_t size) {
   std::string bytes(size + 1, '?');

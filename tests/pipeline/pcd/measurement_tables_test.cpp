@@ -13,6 +13,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd;
 using test::sample_measurements;
 using test::sample_plate;
 

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::wire;
+
 TEST(CaptureGrabber, CallsBackWithEverythingThatTheCaptureHolds) {
   const Scenario scenario;
   const MemoryFile file(pcap_file(scenario.frames()));

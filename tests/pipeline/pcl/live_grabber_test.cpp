@@ -12,6 +12,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::emulate;
+using namespace crisp::simulate;
+
 TEST(LiveGrabber, CallsBackWithEachScanOfAnEmulatedRigAndStops) {
   RecordingSettings settings;
   settings.scanner.duration = 0.2;

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+
 Simulation short_simulation() {
   Simulation simulation{.scene = "street", .duration = 0.3, .seed = 3};
   simulation.truth.lasers[1].eta.value = 0.005;

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcl_grabber;
 using testing::ElementsAre;
 
 /// Scans 20 ms apart with a reading behind each; then the end, an error, or waiting for ever.

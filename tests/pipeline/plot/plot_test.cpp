@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::plot;
 using testing::HasSubstr;
 using testing::Not;
 

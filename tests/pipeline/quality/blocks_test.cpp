@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 /// Counted in parallel, in a loop within another's.
 std::size_t counted(std::size_t n) {
   std::vector<std::size_t> ones(n);

@@ -18,6 +18,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 double gaussian(double distance, double sigma) {
   return std::exp(-distance * distance / (4 * sigma * sigma));
 }

@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 constexpr double kSigma = 0.012;
 
 std::vector<LineSums> running_sums(const std::vector<Eigen::Vector2d>& points) {
@@ -160,7 +162,7 @@ TEST(LineSegmentation, GoByAzimuth) {
   const PointsView points{.x = x, .y = y, .z = z};
   const std::vector<std::uint32_t> order = by_azimuth(points);
   EXPECT_EQ(order, (std::vector<std::uint32_t>{3, 2, 1, 4, 0})) << "from −π on, equal ones as they come";
-  const auto running = crisp::running_sums(points, order, kSigma);
+  const auto running = quality::running_sums(points, order, kSigma);
   ASSERT_EQ(running.size(), 6U);
   EXPECT_EQ(running[0].one, 0);
   const LineSums first = LineSums::of(-1, -1, kSigma);

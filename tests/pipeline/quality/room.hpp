@@ -23,7 +23,7 @@ struct RoomScan {
   std::vector<std::uint32_t> laser;
   std::vector<Eigen::Vector3d> outwards;  ///< from the spin axis to the laser, at the time of each beam
 
-  BeamsView beams() const { return {points.view(), directions.view(), views}; }
+  quality::BeamsView beams() const { return {points.view(), directions.view(), views}; }
 };
 
 /// @param shifts  [m] of each laser from where its beams are thought to start: outwards and along its motion

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 TEST(SpatialOrder, NumbersCellsAlongAMortonCurve) {
   // The curve's first steps: x, then y, then z.
   EXPECT_EQ(cell_key({0, 0, 0}), 0U);

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 /// Beams that come in at 45° onto z = 0, where a surfel takes them all.
 struct Face {
   Vectors points, directions;

@@ -17,6 +17,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 constexpr std::size_t kParameters = 5;
 
 /// How a room's points move with the shifts of the second and third laser (outwards, along), and with an

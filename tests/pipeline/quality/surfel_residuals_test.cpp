@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 /// Beams along a wall x = 1 that is 6 m wide and begins 10 m ahead: they meet it at 4 to 6 degrees. The
 /// scanner is then turned by `turn` [rad] about the vertical, and the wall with it.
 test::RoomScan graze(double noise, double turn) {

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 /// Beams straight down on z = height + slope · x², over a square of this side [m].
 test::RoomScan look_down(std::size_t n, double side, double height, double bend, unsigned seed) {
   std::mt19937_64 random(seed);

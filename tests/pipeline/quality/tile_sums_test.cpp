@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 class TileSums : public test::EachInstructionSet {};
 
 INSTANTIATE_TEST_SUITE_P(All, TileSums, testing::ValuesIn(test::instruction_sets()),

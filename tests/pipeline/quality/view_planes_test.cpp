@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 constexpr double kNoise = 0.012;  // [m]
 const Plane kHorizontal;          // z = 0
 

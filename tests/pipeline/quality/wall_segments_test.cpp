@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+
 /// Beams from the origin, and which wall each met.
 struct Slice {
   Vectors points, directions;

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::files;
+using namespace crisp::stage;
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;

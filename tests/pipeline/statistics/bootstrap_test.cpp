@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
+
 double mean_of(const std::vector<double>& values, const std::vector<std::size_t>& drawn) {
   double sum = 0;
   for (const std::size_t i : drawn) sum += values[i];

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
+
 TEST(DenseSolvers, DecomposeAHandWorkedSymmetricMatrix) {
   const Eigen::MatrixXd matrix{{2.0, 1.0}, {1.0, 2.0}};  // eigenvalues 1 and 3, along the diagonals
   const SymmetricEigen eigen = eigendecomposition(matrix);

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
+
 TEST(MonteCarloTest, CountsTheObservationAsADraw) {
   const std::vector<double> draws = {1, 5, 3, 2, 4};
   std::size_t next = 0;

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
+
 double uniform(std::mt19937_64& random) { return std::uniform_real_distribution<>(0, 1)(random); }
 
 TEST(SidakPValue, IsUniformUnderTheNull) {

@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
 using test::kDraws;
 using test::moments;
 

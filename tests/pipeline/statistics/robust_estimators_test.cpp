@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::statistics;
+
 TEST(Quantile, IsTheValueThatTheShareLiesBelow) {
   std::vector<int> values = {5, 1, 4, 2, 3};
   EXPECT_EQ(quantile_in_place(values, 0), 1);

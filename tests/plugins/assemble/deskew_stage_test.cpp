@@ -19,6 +19,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::assemble;
 using test::StageDriver;
 using testing::ElementsAre;
 using testing::HasSubstr;

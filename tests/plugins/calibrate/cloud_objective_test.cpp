@@ -8,6 +8,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 std::unique_ptr<Measure> exact_entropy() {
   SearchRegistry searches;
   register_built_in(searches);

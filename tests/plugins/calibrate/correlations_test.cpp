@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+
 TEST(Correlations, AreTheStrongestFirstWhateverTheirSign) {
   Calibration calibration;
   calibration.covariance_order = {"laser1.tau", "laser1.eta", "laser2.lambda"};

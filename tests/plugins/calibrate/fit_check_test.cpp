@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

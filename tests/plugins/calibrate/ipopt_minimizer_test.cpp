@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+
 /// Rosenbrock's function: one minimum, of value 0, at (1, 1).
 double rosenbrock(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
   const double a = 1 - x[0];

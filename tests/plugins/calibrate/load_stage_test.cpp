@@ -13,6 +13,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
 using testing::Each;
 using testing::ElementsAre;
 using testing::FloatNear;

@@ -11,6 +11,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

@@ -15,6 +15,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -11,6 +11,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 RqeCalibrationSettings quick() { return {.points = 30000, .probes = 4}; }
 
 TEST(CalibrateByRqe, FindsAScannerThatIsOffByCentimetresDegreesAndMilliseconds) {

@@ -9,6 +9,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 TEST(Annealing, GoesFromWideToNarrowByOneFactor) {
   const auto sigmas = annealing(0.5, 0.1);
   EXPECT_DOUBLE_EQ(sigmas.front(), 0.5);

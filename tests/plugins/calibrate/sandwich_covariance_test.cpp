@@ -11,6 +11,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 TEST(SandwichCovariance, IsTheScatterOfTheOptimaOverNoise) {
   auto scanner = misplaced_scanner(1, 3.0);
   scanner.range.sigma = 1e-6;

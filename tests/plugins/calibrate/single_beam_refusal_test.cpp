@@ -9,6 +9,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
 using testing::HasSubstr;
 
 /// A beam of each laser at each of these mirror angles [rad].

@@ -10,6 +10,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 constexpr double kHalfWidth = 0.0044;  // [rad]
 
 /// Ten seconds in the hall by a plate that turns to and fro at up to 2 Hz: 25 scans a turn.

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clock;
 using ::testing::HasSubstr;
 
 constexpr double kSeconds = 5;

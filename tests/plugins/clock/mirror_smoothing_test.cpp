@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clock;
+
 struct SimulatedMirror {
   std::vector<MirrorStamp> stamps;
   std::vector<double> times;    ///< [s] true

@@ -15,6 +15,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clocks;
+
 using Row = std::vector<std::int64_t>;
 
 /// The numbers of a CSV file of data/clocks, comments left out; nothing if the file is not there.

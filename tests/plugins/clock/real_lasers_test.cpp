@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clock;
+using namespace crisp::wire;
 using ::testing::HasSubstr;
 
 /// What alignment makes of one laser's recorded dialogue.

@@ -6,6 +6,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::clock;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 

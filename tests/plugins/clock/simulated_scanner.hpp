@@ -89,8 +89,8 @@ struct SimulatedLaser {
       scan.transmission_time_us = transmissions.microseconds(sent);
       scan.receipt_ns = receipt_ns(last_receipt);
       scan.scan_frequency = 50;
-      scan.start_angle = -45 * kDegree;
-      scan.angle_step = 270 * kDegree / static_cast<double>(beams - 1);
+      scan.start_angle = -45 * data::kDegree;
+      scan.angle_step = 270 * data::kDegree / static_cast<double>(beams - 1);
       scan.echoes.resize(1);
       scan.echoes[0].ranges.assign(beams, 2.0F);
       t += turn.period;

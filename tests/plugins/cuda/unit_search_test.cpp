@@ -17,6 +17,8 @@
 namespace crisp::cuda {
 namespace {
 
+using namespace crisp::quality;
+
 /// Stands in for the threads of a block: they take each step one after the other.
 template <class Real>
 struct HostLanes {

@@ -18,6 +18,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 constexpr std::size_t kBeams = 100'000;
 
 /// Base parameters (λ, τ, α, η) of three lasers without λ₁.

@@ -32,41 +32,42 @@ inline TermParameters& term_of(Calibration& calibration, const std::string& name
 
 /// A simulated recording with its truth.
 struct Recording {
-  ScannerSettings scanner;
-  SimulatedMeasurements made;
+  simulate::ScannerSettings scanner;
+  simulate::SimulatedMeasurements made;
 
-  Sample sample() const { return {.beams = made.beams, .plate = &made.plate}; }
+  estimate::Sample sample() const { return {.beams = made.beams, .plate = &made.plate}; }
 };
 
-inline ScannerSettings scanner_of(std::uint64_t seed, double duration) {
-  ScannerSettings scanner;
+inline simulate::ScannerSettings scanner_of(std::uint64_t seed, double duration) {
+  simulate::ScannerSettings scanner;
   scanner.seed = seed;
   scanner.duration = duration;
   return scanner;
 }
 
-inline Recording recorded(const ScannerSettings& scanner, const Scene& scene) {
-  return {.scanner = scanner, .made = simulate_measurements(scanner, scene, built_in_terms())};
+inline Recording recorded(const simulate::ScannerSettings& scanner, const simulate::Scene& scene) {
+  return {.scanner = scanner, .made = simulate::simulate_measurements(scanner, scene, built_in_terms())};
 }
 
 /// Simulates terms with the given values of their first parameters.
-inline Recording hidden(std::uint64_t seed, double duration, const Scene& scene,
+inline Recording hidden(std::uint64_t seed, double duration, const simulate::Scene& scene,
                         const std::map<std::string, std::vector<double>>& effects) {
-  ScannerSettings scanner = scanner_of(seed, duration);
+  simulate::ScannerSettings scanner = scanner_of(seed, duration);
   for (const auto& [name, values] : effects) {
-    add_requested_terms(scanner.truth, {name}, built_in_terms());
+    estimate::add_requested_terms(scanner.truth, {name}, built_in_terms());
     auto& parameters = term_of(scanner.truth, name).parameters;
     for (std::size_t k = 0; k < values.size(); ++k) parameters.at(k).value = values[k];
   }
   return recorded(scanner, scene);
 }
 
-inline Diagnosis diagnosed(const Recording& recording, const DiagnosisSettings& settings = {}) {
-  return diagnose(SensorModel(nominal_calibration(recording.scanner.rig), built_in_terms()),
-                  recording.sample(), built_in_terms(), settings);
+inline diagnose::Diagnosis diagnosed(const Recording& recording,
+                                     const diagnose::DiagnosisSettings& settings = {}) {
+  return diagnose::diagnose(SensorModel(nominal_calibration(recording.scanner.rig), built_in_terms()),
+                            recording.sample(), built_in_terms(), settings);
 }
 
-inline std::vector<std::string> names_in(const Diagnosis& diagnosis) {
+inline std::vector<std::string> names_in(const diagnose::Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const auto& hypothesis : diagnosis.hypotheses) {
     if (hypothesis.accepted) names.push_back(hypothesis.candidate.name);
@@ -84,9 +85,9 @@ struct Reported {
 };
 
 /// Estimates of a term's parameters.
-inline std::vector<Reported> estimates_of(const Diagnosis& diagnosis, Calibration truth,
+inline std::vector<Reported> estimates_of(const diagnose::Diagnosis& diagnosis, Calibration truth,
                                           const std::string& term) {
-  const crisp::Outcome& outcome = diagnosis.after.outcome;
+  const estimate::Outcome& outcome = diagnosis.after.outcome;
   const auto& parameters = term_of(truth, term).parameters;
   std::vector<Reported> all;
   for (std::size_t k = 0; k < outcome.free.size(); ++k) {

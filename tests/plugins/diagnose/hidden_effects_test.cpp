@@ -19,6 +19,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::quality;
+using namespace crisp::simulate;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -195,8 +198,8 @@ Diagnosis diagnosed_in_two_places(const std::map<std::string, std::vector<double
   const auto first = test::hidden(31, 4, office(), effects);
   const auto second = test::hidden(32, 4, hall(), effects);
   const test::Several both = test::several({first.made, second.made}, new_zeros);
-  return diagnose(SensorModel(nominal_calibration(default_rig()), built_in_terms()), both.sample(),
-                  built_in_terms(), {});
+  return diagnose::diagnose(SensorModel(nominal_calibration(default_rig()), built_in_terms()), both.sample(),
+                            built_in_terms(), {});
 }
 
 TEST(HiddenEffects, RecordingsOfTwoPlacesShareOneCauseAndValidateEachOther) {

@@ -9,6 +9,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 /// An effect that no built-in cause describes.
 struct Ripple final : DifferentiableTerm<Ripple> {
   const TermInfo& info() const override {
@@ -35,8 +39,8 @@ TEST(PluginTerm, IsNamedLikeTheBuiltInOnes) {
   add_requested_terms(scanner.truth, {"laser3.mine.ripple"}, terms);
   test::term_of(scanner.truth, "laser3.mine.ripple").parameters.at(0).value = 0.011;
   const auto made = simulate_measurements(scanner, office(), terms);
-  const Diagnosis diagnosis = diagnose(SensorModel(nominal_calibration(default_rig()), terms),
-                                       {.beams = made.beams, .plate = &made.plate}, terms, {});
+  const Diagnosis diagnosis = diagnose::diagnose(SensorModel(nominal_calibration(default_rig()), terms),
+                                                 {.beams = made.beams, .plate = &made.plate}, terms, {});
   EXPECT_THAT(test::names_in(diagnosis), testing::ElementsAre("laser3.mine.ripple"));
   const auto reported = test::estimates_of(diagnosis, scanner.truth, "laser3.mine.ripple");
   ASSERT_EQ(reported.size(), 1U);

@@ -12,18 +12,20 @@ struct TrueThickness {
   double clean = 0;       ///< of the same scanner, scene and motion without the effect
 };
 
-inline double thickness_of(const CrossValidator& held_out, const SensorModel& model) {
+inline double thickness_of(const diagnose::CrossValidator& held_out, const SensorModel& model) {
   const auto score = held_out.score(model);
-  return CrossValidator::gains(score, score).at(0).after;
+  return diagnose::CrossValidator::gains(score, score).at(0).after;
 }
 
 /// @param before  the diagnosis's model without the effect: it selects the surfaces
 inline TrueThickness true_thickness(const Recording& hidden, const Recording& clean,
                                     const SensorModel& before) {
-  const auto halves = [](const Recording& of) { return halves_of(covered(of.sample(), -0.05, 0.05)); };
+  const auto halves = [](const Recording& of) {
+    return diagnose::halves_of(estimate::covered(of.sample(), -0.05, 0.05));
+  };
   const auto truth = [](const Recording& of) { return SensorModel(of.scanner.truth, built_in_terms()); };
-  return {.with_truth = thickness_of(CrossValidator(halves(hidden), before, {}), truth(hidden)),
-          .clean = thickness_of(CrossValidator(halves(clean), truth(clean), {}), truth(clean))};
+  return {.with_truth = thickness_of(diagnose::CrossValidator(halves(hidden), before, {}), truth(hidden)),
+          .clean = thickness_of(diagnose::CrossValidator(halves(clean), truth(clean), {}), truth(clean))};
 }
 
 }  // namespace crisp::test

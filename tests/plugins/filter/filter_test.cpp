@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::filter;
 using test::StageDriver;
 using testing::ElementsAre;
 

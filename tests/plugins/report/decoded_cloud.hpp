@@ -32,7 +32,7 @@ inline std::string decoded_base64(const std::string& text) {
 }
 
 /// The columns of a page's cloud, decoded by its header.
-inline std::map<std::string, std::vector<double>> decoded_cloud(const EncodedCloud& cloud) {
+inline std::map<std::string, std::vector<double>> decoded_cloud(const report::EncodedCloud& cloud) {
   const std::string packed = decoded_base64(cloud.base64);
   const auto n = cloud.header.at("points").get<std::size_t>();
   std::size_t width = 0;

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::report;
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// n points at random in a cube of this side [m].

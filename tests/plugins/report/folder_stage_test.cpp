@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::report;
 using test::StageDriver;
 using test::TemporaryFolder;
 using testing::ElementsAre;

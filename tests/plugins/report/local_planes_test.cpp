@@ -9,6 +9,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+using namespace crisp::report;
+
 constexpr double kCell = 0.1;  // [m]
 
 /// A square of 0.3 m at z = 1 m, in the middle of a cell of 0.4 m, every other point `off` above and below

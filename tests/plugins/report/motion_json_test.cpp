@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::estimate;
+using namespace crisp::report;
+
 constexpr double kHalfTurn = std::numbers::pi;
 
 /// Half a turn a second, read ten times a second, with a silence of two seconds from 1 s on.

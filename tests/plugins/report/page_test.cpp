@@ -8,6 +8,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::report;
 using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::ordered_json;

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::report;
 using test::StageDriver;
 using test::TemporaryFolder;
 using testing::ElementsAre;

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::app;
+using namespace crisp::report;
 using testing::HasSubstr;
 
 RunRecord some_run() {

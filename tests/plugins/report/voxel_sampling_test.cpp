@@ -9,6 +9,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::quality;
+using namespace crisp::report;
+
 constexpr double kSide = 0.1;  // [m]
 
 /// Adds `count` points within a centimetre about a place on the x axis.

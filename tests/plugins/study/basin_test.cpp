@@ -14,6 +14,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::study;
 using testing::HasSubstr;
 
 using test::make_rqe;

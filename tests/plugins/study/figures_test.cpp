@@ -14,6 +14,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
+using namespace crisp::study;
+
 const FigureSettings& settings() {
   static const FigureSettings settings;
   return settings;

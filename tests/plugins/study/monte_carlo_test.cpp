@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::simulate;
+using namespace crisp::study;
 using test::make_rqe;
 
 MonteCarloSettings small(std::size_t runs) {

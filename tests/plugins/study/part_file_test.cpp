@@ -19,6 +19,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::batch;
+using namespace crisp::study;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 

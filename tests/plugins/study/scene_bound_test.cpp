@@ -19,6 +19,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::simulate;
+using namespace crisp::study;
 using testing::AllOf;
 using testing::HasSubstr;
 

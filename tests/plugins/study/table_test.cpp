@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::estimate;
+using namespace crisp::study;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;

@@ -11,6 +11,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::write;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 

@@ -15,6 +15,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
 namespace fs = std::filesystem;
 using test::StageDriver;
 using testing::ElementsAre;

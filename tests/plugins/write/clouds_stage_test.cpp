@@ -15,6 +15,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
 namespace fs = std::filesystem;
 
 Cloud cloud_of(std::size_t points) {

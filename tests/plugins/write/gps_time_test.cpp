@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 constexpr std::uint64_t kGpsEpoch = 315'964'800'000'000;  // [µs] 1980-01-06
 
 TEST(GpsTime, BeginsIn1980) {

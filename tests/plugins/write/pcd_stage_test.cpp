@@ -15,6 +15,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::pcd;
+using namespace crisp::write;
 namespace fs = std::filesystem;
 using test::sample_cloud;
 using test::StageDriver;

@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 class WriteTrajectory : public testing::Test {
  protected:
   WriteTrajectory()

@@ -12,6 +12,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::write;
+
 /// The transform of the first <origin> behind a laser's joint: Rz(yaw) Ry(pitch) Rx(roll), then xyz.
 Eigen::Isometry3d origin_of(const std::string& urdf, const std::string& laser) {
   const std::regex origin("name=\"" + laser +

@@ -11,6 +11,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::data;
+using namespace crisp::simulate;
+
 constexpr auto kGoOn = [] { return true; };
 
 CalibrationCheck check(const Calibration& calibration, const SimulatedMeasurements& simulated,

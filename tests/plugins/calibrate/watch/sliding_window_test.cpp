@@ -10,6 +10,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::estimate;
+
 TEST(SlidingWindow, KeepsTheLastSecondsAndNoMore) {
   SlidingWindow recent(0.5);
   for (auto& batch : test::batches_of(test::recorded(1.5))) recent.add(std::move(batch));

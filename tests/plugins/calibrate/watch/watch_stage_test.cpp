@@ -14,6 +14,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::calibrate;
+using namespace crisp::data;
+using namespace crisp::simulate;
+
 using Options = std::map<std::string, OptionValue>;
 
 /// The stage with an office of three seconds and a calibration from above.

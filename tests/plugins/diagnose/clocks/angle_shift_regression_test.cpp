@@ -12,6 +12,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 /// Shifts of one laser on a plate that speeds up: passes of the last third are faster than those before, and
 /// the encoder slips by `slip` at 7 s, in the way in which a lag of 0.1 s would show.
 std::vector<AngleShift> of_a_faster_plate(double slip, std::size_t count) {

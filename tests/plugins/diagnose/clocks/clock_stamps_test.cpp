@@ -19,6 +19,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::plot;
+using namespace crisp::statistics;
+
 constexpr double kRate = 50;                        // [Hz]
 constexpr double kDuration = 60;                    // [s]
 constexpr std::uint32_t kStart_us = 4'294'000'000;  // wraps after one second

@@ -12,6 +12,7 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

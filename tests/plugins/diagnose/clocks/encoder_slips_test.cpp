@@ -19,6 +19,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::statistics;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;

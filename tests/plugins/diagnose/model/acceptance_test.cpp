@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+
 Refinement fitted(const Calibration& start) {
   Refinement fit{
       .outcome = {

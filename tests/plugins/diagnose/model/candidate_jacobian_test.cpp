@@ -11,6 +11,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 std::vector<std::string> names(const std::vector<Candidate>& candidates) {
   std::vector<std::string> all;
   for (const auto& candidate : candidates) all.push_back(candidate.name);

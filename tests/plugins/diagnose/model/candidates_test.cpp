@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 constexpr const char* kPeriodic = "laser2.empirical.range_by_range_phase";
 
 Calibration plain() { return nominal_calibration(default_rig()); }

@@ -10,6 +10,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+
 constexpr double kMiddle = 5;  // [s] of the recording
 
 /// The second laser's drift, and its fit with this skew and growth, known to 1 ppm and 0.2 ppm/s.

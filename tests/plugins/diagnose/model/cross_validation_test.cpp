@@ -11,6 +11,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 TEST(CrossValidator, HalvesShareNoTurnAndNoBeamIsLost) {
   const auto recording = test::hidden(1, 6, office(), {});
   const Sample all = recording.sample();

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 constexpr double kSigma = 0.01;         // [m] noise of a residual
 constexpr std::uint32_t kBeams = 6000;  // of each laser
 constexpr std::size_t kLasers = 3;

@@ -8,6 +8,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
+
 /// Recording with mirrors at exactly their nominal rate.
 test::Recording at_constant_rate(double rate) {
   ScannerSettings scanner = test::scanner_of(1, 10);

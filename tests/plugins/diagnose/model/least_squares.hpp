@@ -25,10 +25,10 @@ class LeastSquares {
     equations_.influence += noise * noise;
   }
 
-  const NormalEquations& equations() const { return equations_; }
+  const quality::NormalEquations& equations() const { return equations_; }
 
  private:
-  NormalEquations equations_;
+  quality::NormalEquations equations_;
   Eigen::Index added_ = 0;
 };
 

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::simulate;
 using testing::Contains;
 using testing::HasSubstr;
 

@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 using Others = std::vector<Candidate::OtherForm>;
 
 Candidate::OtherForm other(double off, double behind) {

@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 /// Residuals of two interleaved lasers; the second has twice the assumed noise of the first.
 struct TwoLasers {
   Residuals residuals;

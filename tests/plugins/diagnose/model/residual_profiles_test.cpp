@@ -12,6 +12,10 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::quality;
+using namespace crisp::simulate;
+
 ProfileComparison given(const test::Recording& recording) {
   const SurfelSettings settings;
   const SurfaceObservations observations(SensorModel(recording.scanner.truth, built_in_terms()),

@@ -6,6 +6,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 constexpr double kRangeNoise = 0.010;  // [m]
 
 /// A hypothesis that explains so much [m] of the residuals of one laser.

@@ -13,6 +13,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::quality;
+
 /// Normal equations of n residuals with random derivatives and parameters `truth`.
 NormalEquations random_problem(const Eigen::VectorXd& truth, Eigen::Index n, unsigned seed) {
   std::mt19937_64 random(seed);

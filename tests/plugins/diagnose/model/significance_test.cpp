@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+
 /// A fit with range.offset and range.intensity of the first laser, at these estimates.
 Outcome outcome(double offset, double a, double b) {
   Calibration calibration = nominal_calibration(default_rig());

@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::quality;
 using testing::UnorderedElementsAre;
 
 /// Causes of one parameter each, in the order of the names.

@@ -69,7 +69,7 @@ class Drawer {
   Drawn with_something_else(std::size_t which, double size);
 
  private:
-  ScannerSettings& scanner() { return drawn_.recording.scanner; }
+  simulate::ScannerSettings& scanner() { return drawn_.recording.scanner; }
   double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random_); }
   double normal() { return std::normal_distribution()(random_); }
   std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
@@ -77,7 +77,7 @@ class Drawer {
   void draw_scene() {
     static const std::array<std::string, 3> kNames = {"office", "hall", "street"};
     drawn_.scene = kNames[below(kNames.size())];
-    scene_ = built_in_scene(drawn_.scene);
+    scene_ = simulate::built_in_scene(drawn_.scene);
   }
 
   /// Two to four lasers with mounting errors against the rig.
@@ -109,7 +109,7 @@ class Drawer {
   }
 
   void draw_motion() {
-    MotionSettings& motion = scanner().motion;
+    simulate::MotionSettings& motion = scanner().motion;
     motion.max_rate = uniform(1, 2);
     switch (below(3)) {
       case 0:
@@ -122,7 +122,7 @@ class Drawer {
         break;
       default:
         drawn_.motion = "reversal";
-        motion.kind = MotionKind::reversal;
+        motion.kind = simulate::MotionKind::reversal;
     }
   }
 
@@ -160,20 +160,20 @@ class Drawer {
   /// [m] RMS change of the ranges of the affected lasers by a term of the truth: difference of two noise-free
   /// recordings, without beams that meet different surfaces.
   double change_of_ranges(const std::string& name) {
-    ScannerSettings with = scanner();
+    simulate::ScannerSettings with = scanner();
     with.range.sigma = 0;
     with.beams.clear();
     constexpr std::size_t kEvery = 12;
     for (std::size_t beam = 0; beam < with.field.beams(); beam += kEvery) {
       with.beams.push_back(static_cast<std::uint16_t>(beam));
     }
-    ScannerSettings without = with;
+    simulate::ScannerSettings without = with;
     std::erase_if(without.truth.plate_terms, [&](const auto& term) { return term.term == name; });
     for (auto& laser : without.truth.lasers) {
       std::erase_if(laser.terms, [&](const auto& term) { return laser.name + "." + term.term == name; });
     }
-    return rms_change(simulate_measurements(with, scene_, built_in_terms()).beams,
-                      simulate_measurements(without, scene_, built_in_terms()).beams);
+    return rms_change(simulate::simulate_measurements(with, scene_, built_in_terms()).beams,
+                      simulate::simulate_measurements(without, scene_, built_in_terms()).beams);
   }
 
   static double rms_change(const Measurements& a, const Measurements& b) {
@@ -198,7 +198,7 @@ class Drawer {
     const bool of_plate = built_in_terms().get(effect)->info().scope == Scope::kPlate;
     const std::string name =
         of_plate ? effect : "laser" + std::to_string(1 + below(scanner().rig.lasers.size())) + "." + effect;
-    add_requested_terms(scanner().truth, {name}, built_in_terms());
+    estimate::add_requested_terms(scanner().truth, {name}, built_in_terms());
     draw_parameters(term_of(scanner().truth, name));
     scale(name, size);
     drawn_.names.push_back(name);
@@ -206,12 +206,12 @@ class Drawer {
   }
 
   Drawn record() {
-    drawn_.recording.made = simulate_measurements(scanner(), scene_, built_in_terms());
+    drawn_.recording.made = simulate::simulate_measurements(scanner(), scene_, built_in_terms());
     return std::move(drawn_);
   }
 
   std::mt19937_64 random_;
-  Scene scene_;
+  simulate::Scene scene_;
   Drawn drawn_;
 };
 

@@ -16,6 +16,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 using Random = std::mt19937_64;
 using RangeErrorDraw = std::function<double(Random&, int beam, int scan)>;
 

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 /// Normal errors, each with its own σ.
 RangeErrors errors_of(std::uint64_t seed, std::size_t n, const std::function<double(std::size_t)>& sigma) {
   std::mt19937_64 random(seed);

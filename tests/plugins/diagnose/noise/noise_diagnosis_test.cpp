@@ -19,6 +19,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::plot;
 using testing::IsEmpty;
 using testing::SizeIs;
 

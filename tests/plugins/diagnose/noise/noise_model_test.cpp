@@ -15,6 +15,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::model;
+using namespace crisp::statistics;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::IsEmpty;

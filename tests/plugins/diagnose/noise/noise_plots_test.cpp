@@ -10,6 +10,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::plot;
+
 constexpr double kUsualSigma = 0.01;  // [m]
 constexpr double kTailShare = 0.05;
 constexpr double kTailScale = 4;

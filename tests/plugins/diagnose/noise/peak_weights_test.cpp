@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 struct Drawn {
   double least = 0.1, most = 0.9;  // limits of the weights
   int beams = 200, scans = 150;

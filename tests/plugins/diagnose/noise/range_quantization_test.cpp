@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 TEST(RangeQuantization, IsDetectedInMultiplesOnly) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<float> range(1, 9);

@@ -25,6 +25,11 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::quality;
+using namespace crisp::simulate;
 using testing::IsEmpty;
 using testing::SizeIs;
 

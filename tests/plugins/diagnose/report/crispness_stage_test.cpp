@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 /// Outputs two points as two clouds.
 class TwoPoints final : public Stage {
  public:

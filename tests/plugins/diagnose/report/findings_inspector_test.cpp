@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::files;
 using testing::HasSubstr;
 
 Findings some_findings() {

@@ -13,6 +13,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::estimate;
+using namespace crisp::simulate;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;

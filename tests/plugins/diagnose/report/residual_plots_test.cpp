@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::plot;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;

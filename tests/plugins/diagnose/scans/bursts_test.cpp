@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 constexpr double kPeriod = test::TiltingScene::kPeriod;
 
 TEST(Bursts, AreFoundInScansThatArriveInPairs) {

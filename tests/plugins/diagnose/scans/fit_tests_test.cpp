@@ -14,6 +14,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
 using test::TiltingScene;
 
 struct HiddenAtRest {

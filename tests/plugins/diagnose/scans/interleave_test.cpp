@@ -8,6 +8,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 constexpr double kNoiseAtRest = 0.01;
 constexpr std::uint16_t kScans = 120;
 

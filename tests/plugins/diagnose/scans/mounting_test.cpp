@@ -13,6 +13,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 /// Ranges from an optical centre off the tilt axis in a box of 4 x 6 x 8 m, by intersection with its six
 /// planes.
 class BoxSweep {

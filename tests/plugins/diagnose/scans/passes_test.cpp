@@ -11,6 +11,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
+
 constexpr double kStep = 0.1 * kDegree;
 constexpr double kNoiseOfPasses = 0.01;
 

@@ -8,6 +8,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
 using test::TiltingScene;
 
 /// A sweep in which all ranges increase by `by` [m] at the eightieth scan.

@@ -17,6 +17,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::data;
+using namespace crisp::diagnose;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;

@@ -40,11 +40,11 @@ class TiltingScene {
     scan->scan_time_us = scan->transmission_time_us =
         static_cast<std::uint32_t>(std::lround(count * kPeriod * 1e6));
     scan->receipt_ns = std::llround(receipt * 1e9);
-    scan->start_angle = 20 * kDegree;
-    scan->angle_step = kDegree;
+    scan->start_angle = 20 * data::kDegree;
+    scan->angle_step = data::kDegree;
     scan->echoes.resize(1);
     for (std::size_t k = 0; k < beams; ++k) {
-      const double r = range(tilt, first + static_cast<double>(k) * kDegree);
+      const double r = range(tilt, first + static_cast<double>(k) * data::kDegree);
       scan->echoes[0].ranges.push_back(static_cast<float>(r + noise_ * normal_(random_)));
     }
     return scan;
@@ -59,9 +59,10 @@ class TiltingScene {
 };
 
 inline PlateReading reading_at(double angle, double time, double counts_per_revolution = 360000) {
-  return {.device_us = static_cast<std::uint32_t>(std::lround(time * 1e6)),
-          .count = static_cast<std::uint32_t>(std::lround(angle / (360 * kDegree) * counts_per_revolution)),
-          .receipt_ns = std::llround(time * 1e9)};
+  return {
+      .device_us = static_cast<std::uint32_t>(std::lround(time * 1e6)),
+      .count = static_cast<std::uint32_t>(std::lround(angle / (360 * data::kDegree) * counts_per_revolution)),
+      .receipt_ns = std::llround(time * 1e9)};
 }
 
 }  // namespace crisp::test

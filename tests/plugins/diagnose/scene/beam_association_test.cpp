@@ -14,6 +14,9 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+using namespace crisp::quality;
+
 /// A laser at the origin, and beams from it.
 struct Fan {
   std::vector<double> x, y, z, dx, dy, dz;

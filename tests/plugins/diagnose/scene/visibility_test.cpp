@@ -9,6 +9,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::diagnose;
+
 TEST(ChangingDirections, DistinguishJointOcclusionFromIndependentOnes) {
   std::mt19937_64 random(1);
   constexpr std::size_t kTimes = 12, kDirections = 30;

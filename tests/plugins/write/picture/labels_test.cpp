@@ -13,6 +13,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 Picture black(std::uint32_t width, std::uint32_t height) {
   Picture picture{.width = width, .height = height, .rgb = {}};
   picture.rgb.resize(std::size_t{3} * width * height);

@@ -12,6 +12,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 using Rgb = std::array<int, 3>;
 
 /// Ten by ten pixels of 1 m.

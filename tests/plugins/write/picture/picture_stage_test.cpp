@@ -16,6 +16,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 TEST(PictureStage, WritesAPngOfTheSizeAskedFor) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "picture.png";

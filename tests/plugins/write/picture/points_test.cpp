@@ -10,6 +10,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 TEST(PicturePoints, StayBelowTheirLimitAndEvenlySpaced) {
   PicturePoints points(PictureColour::laser, 100);
   for (int i = 0; i < 1000; ++i) points.add(test::picture_cloud({{static_cast<float>(i), 0, 0}}));

@@ -11,6 +11,8 @@
 namespace crisp {
 namespace {
 
+using namespace crisp::write;
+
 using Pixel = std::array<std::uint32_t, 2>;
 
 /// Ten by ten pixels of 1 m.
