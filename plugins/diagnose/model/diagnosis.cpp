@@ -20,6 +20,7 @@
 #include "plugins/diagnose/model/cross_validation.hpp"
 #include "plugins/diagnose/model/nonlinear_parameters.hpp"
 #include "plugins/diagnose/model/per_model.hpp"
+#include "plugins/diagnose/model/significance.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 namespace crisp::diagnose {
