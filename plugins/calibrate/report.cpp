@@ -121,7 +121,7 @@ void report(const std::optional<estimate::CrossValidation>& halves, Context& con
       {{"cross_validation",
         {{"difference", halves->difference}, {"expected", halves->expected}, {"ratio", halves->ratio()}}}});
   context.print(fmt::format(
-      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), {:.1f} times their standard errors (1 or less is good)",
+      "cross-validation: fitted to either half of the turns, the clouds differ by {:.2f} mm (RMS), {:.2g} times their standard errors (1 or less is good)",
       halves->difference * 1e3, halves->ratio()));
 }
 
