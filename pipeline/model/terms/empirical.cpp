@@ -91,11 +91,16 @@ EffectParameter period_of_range() {
           .tries = {.spacing = Tries::Spacing::kOfSimpleForm, .from = 0.5, .to = 16, .count = 1}};
 }
 
+/// What a bearing does over the plate's angle about the spin axis is an error of the encoder.
+std::vector<std::string> axes_of(On on, Over over) {
+  if (on == On::kTilt && over == Over::kPlateAngle) return {"x_", "y_"};
+  if (on == On::kTilt || on == On::kBase) return {"x_", "y_", "z_"};
+  return {""};
+}
+
 std::vector<EffectParameter> parameters(On on, Over over, const Shape& shape) {
   const OnName what = describe(on);
-  const std::vector<std::string> axes = on == On::kBase || on == On::kTilt
-                                            ? std::vector<std::string>{"x_", "y_", "z_"}
-                                            : std::vector<std::string>{""};
+  const std::vector<std::string> axes = axes_of(on, over);
   constexpr double kOfPeriodic = 0.2;  // as range.cyclic: a distance must have one range
   const double bound = what.bound * shape.scale() * (over == Over::kRangePhase ? kOfPeriodic : 1);
   std::vector<EffectParameter> all;
@@ -189,19 +194,20 @@ void register_empirical_terms(TermRegistry& terms) {
   add(On::kRange, Over::kIncidence, Shape::splines(6, 0, kGrazing, 0), "range.incidence");
   add(On::kRange, Over::kRemission, Shape::splines(6, dark, bright, usual), "range.intensity");
   add(On::kRange, Over::kTime, in_time, "range.warmup");
-  add(On::kRange, Over::kRangePhase, Shape::fourier(6), "range.cyclic");
-  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(4), "mirror.eccentricity");
-  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(4), "mirror.cone");
+  add(On::kRange, Over::kRangePhase, Shape::fourier(1, 6), "range.cyclic");
+  add(On::kMirrorAngle, Over::kMirrorAngle, Shape::fourier(1, 4), "mirror.eccentricity");
+  add(On::kElevation, Over::kMirrorAngle, Shape::fourier(2, 4),
+      "mirror.cone");  // once a turn: the mount's tilt
   add(On::kLag, Over::kTime, in_time, "clock.drift");
-  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(6), "encoder.eccentricity");
+  add(On::kPlateAngle, Over::kPlateAngle, Shape::fourier(1, 6), "encoder.eccentricity");
   add(On::kPlateAngle, Over::kPlateRate, Shape::powers(), "encoder.speed_lag");
-  add(On::kBase, Over::kPlateAngle, Shape::fourier(2), "plate.wobble");
-  add(On::kTilt, Over::kPlateAngle, Shape::fourier(2), "plate.wobble");
+  add(On::kBase, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
+  add(On::kTilt, Over::kPlateAngle, Shape::fourier(1, 2), "plate.wobble");
   add(On::kBase, Over::kTime, in_time, "base.motion");
   add(On::kTilt, Over::kTime, in_time, "base.motion");
   // Departures whose invariances are those of no cause.
-  add(On::kRange, Over::kMirrorAngle, Shape::fourier(4));
-  add(On::kRange, Over::kPlateAngle, Shape::fourier(4));
+  add(On::kRange, Over::kMirrorAngle, Shape::fourier(1, 4));
+  add(On::kRange, Over::kPlateAngle, Shape::fourier(1, 4));
   add(On::kRange, Over::kRange, Shape::curve());
   add(On::kRange, Over::kRange, Shape::hats({1, 2, 3, 4, 6, 8, 12, 20}));
   add(On::kRange, Over::kPlateRate, Shape::powers());

@@ -102,9 +102,11 @@ class EmpiricalTerm final : public ModelTerm {
   }
   template <class X, class P>
   auto along_axes(const ShapeWeights<X>& weights, std::span<const P> p) const {
+    using Number = decltype(X() * P());
     const std::size_t n = shape_.coefficients();
-    return Vector3<decltype(X() * P())>{sum(weights, p), sum(weights, p.subspan(n)),
-                                        sum(weights, p.subspan(2 * n))};
+    const bool has_z = p.size() >= 3 * n;
+    return Vector3<Number>{sum(weights, p), sum(weights, p.subspan(n)),
+                           has_z ? sum(weights, p.subspan(2 * n)) : Number(0)};
   }
 
   On on_;

@@ -8,9 +8,10 @@
 
 namespace crisp::model {
 
-Shape Shape::fourier(int orders) {
+Shape Shape::fourier(int first, int last) {
   Shape shape(Kind::kFourier);
-  shape.count_ = static_cast<std::size_t>(orders);
+  shape.first_order_ = static_cast<std::size_t>(first);
+  shape.count_ = static_cast<std::size_t>(last) - shape.first_order_ + 1;
   return shape;
 }
 
@@ -58,7 +59,7 @@ double Shape::scale() const {
 std::string Shape::name(std::size_t coefficient) const {
   switch (kind_) {
     case Kind::kFourier:
-      return fmt::format("{}{}", coefficient % 2 == 0 ? "cos" : "sin", 1 + coefficient / 2);
+      return fmt::format("{}{}", coefficient % 2 == 0 ? "cos" : "sin", first_order_ + coefficient / 2);
     case Kind::kHats:
     case Kind::kSplines:
       return "at" + std::to_string(coefficient);
@@ -72,7 +73,7 @@ std::string Shape::name(std::size_t coefficient) const {
 std::string Shape::summary(std::size_t coefficient) const {
   switch (kind_) {
     case Kind::kFourier:
-      return fmt::format("of {} {}x", coefficient % 2 == 0 ? "cos" : "sin", 1 + coefficient / 2);
+      return fmt::format("of {} {}x", coefficient % 2 == 0 ? "cos" : "sin", first_order_ + coefficient / 2);
     case Kind::kHats:
       return fmt::format("at x = {:.2f}", knots_[coefficient]);
     case Kind::kSplines: {

@@ -29,8 +29,8 @@ auto sum(const ShapeWeights<X>& weights, std::span<const P> coefficients) {
 /// A function of one number with n coefficients, in which it is linear.
 class Shape {
  public:
-  /// Σ aₖ cos kx + bₖ sin kx for the orders from 1 to `orders` ≤ 6.
-  static Shape fourier(int orders);
+  /// Σ aₖ cos kx + bₖ sin kx for the orders k from `first` ≥ 1 to `last` ≤ 6.
+  static Shape fourier(int first, int last);
   /// Piecewise linear between knots (ascending), with the coefficients as values; constant beyond them.
   static Shape hats(std::vector<double> knots);
   /// A smooth function for x between two ends, 0 at `zero`: n + 1 ≥ 4 cubic B-splines at even distances, less
@@ -84,12 +84,17 @@ class Shape {
     using std::sin;
     const X c = cos(x);
     const X s = sin(x);
-    ShapeWeights<X> weights = {{0, c}, {1, s}};
-    for (std::size_t k = 2; k < coefficients(); k += 2) {
-      const X before = weights[k - 2].second;
-      const X& sine = weights[k - 1].second;
-      weights.emplace_back(k, before * c - sine * s);
-      weights.emplace_back(k + 1, sine * c + before * s);
+    X cosine = c;
+    X sine = s;
+    ShapeWeights<X> weights;
+    for (std::size_t order = 1; weights.size() < coefficients(); ++order) {
+      if (order >= first_order_) {
+        weights.emplace_back(weights.size(), cosine);
+        weights.emplace_back(weights.size(), sine);
+      }
+      const X before = cosine;
+      cosine = before * c - sine * s;
+      sine = sine * c + before * s;
     }
     return weights;
   }
@@ -129,6 +134,7 @@ class Shape {
 
   Kind kind_;
   std::size_t count_ = 0;            // of orders or B-splines
+  std::size_t first_order_ = 1;      // of cosines and sines
   std::vector<double> knots_;        // of hats; or both ends of the B-splines
   std::size_t omitted_ = 0;          // B-spline whose coefficient is 0
   std::array<double, 4> at_zero_{};  // B-splines where their sum is 0

@@ -64,8 +64,18 @@ TEST(Splines, HaveTheirDerivatives) {
   }
 }
 
+TEST(Harmonics, BeginWithTheFirstRequested) {
+  const Shape all = Shape::fourier(1, 4);
+  const Shape some = Shape::fourier(2, 4);
+  ASSERT_EQ(some.coefficients(), 6U);
+  EXPECT_EQ(some.name(0), "cos2");
+  const std::vector<double> coefficients{1, -2, 0.5, 3, 1, -1};
+  const std::vector<double> with_first{0, 0, 1, -2, 0.5, 3, 1, -1};
+  EXPECT_NEAR(at(some, 0.7, coefficients), at(all, 0.7, with_first), 1e-14);
+}
+
 TEST(Harmonics, AreCosinesAndSinesOfTheMultiples) {
-  const Shape shape = Shape::fourier(6);
+  const Shape shape = Shape::fourier(1, 6);
   ASSERT_EQ(shape.coefficients(), 12U);
   for (const double x : {-3.0, -0.4, 0.0, 1.3, 40.0}) {
     for (std::size_t k = 0; k < 12; ++k) {
