@@ -43,6 +43,7 @@ struct CommandLine {
   StudyRequest basin;
   std::uint64_t basin_starts = 1000;
   RunRequest bound;
+  RunRequest detection;
   RunRequest figures;
   StudyRequest monte_carlo;
   RunRequest record;
@@ -71,6 +72,7 @@ struct CommandLine {
   CLI::App* study_app = nullptr;
   CLI::App* basin_app = nullptr;
   CLI::App* bound_app = nullptr;
+  CLI::App* detection_app = nullptr;
   CLI::App* figures_app = nullptr;
   CLI::App* monte_carlo_app = nullptr;
   CLI::App* record_app = nullptr;
@@ -120,6 +122,7 @@ struct CommandLine {
   static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
   void add_studies();
   void add_bound();
+  void add_detection();
   void add_basin();
   void add_record();
   void add_emulate();

@@ -77,6 +77,7 @@ void CommandLine::add_studies() {
   study_app = command("study", "Study the method itself: bounds, simulated recordings, the paper's figures");
   study_app->require_subcommand(1);
   add_bound();
+  add_detection();
   add_basin();
   add_monte_carlo();
   add_figures();
@@ -96,6 +97,24 @@ void CommandLine::add_bound() {
                      {"max_rate", "Highest rate, or the constant rate: 2Hz"},
                      {"noise", "Standard deviation of a range: 12mm"},
                      {"beams", "all, or in_plane: the two beams of each laser in the plate's plane"},
+                     {"calibration", "Calibration of the scanner, instead of the nominal values"}});
+}
+
+void CommandLine::add_detection() {
+  detection_app =
+      command_of(*study_app, "detection",
+                 "Compute from which size on a planned recording shows each effect, and resolves its cause");
+  add_own_pipeline(detection_app, "detection.yaml", kDetectionPipeline, "out/detection", "--threads",
+                   detection);
+  add_rig(detection_app, detection.arguments);
+  add_stage_options(detection_app, "study.detection", detection,
+                    {{"scene", kScenes},
+                     {"scene_file", "Scene file in YAML"},
+                     {"duration", "Duration of the recording: 10s"},
+                     {"motion", "Motion of the plate: constant, varying, reversal, stop_and_go"},
+                     {"min_rate", "Lowest rate of a varying motion: 0Hz"},
+                     {"max_rate", "Highest rate, or the constant rate: 2Hz"},
+                     {"noise", "Standard deviation of a range: 12mm"},
                      {"calibration", "Calibration of the scanner, instead of the nominal values"}});
 }
 

@@ -186,6 +186,7 @@ ExitStatus run_program(const CommandLine& line) {
   if (line.cluster_app->parsed()) return cluster_submit_command(cluster_submit_request(line), registrar);
   if (line.basin_app->parsed()) return study_command(basin_request(line), registrar);
   if (line.bound_app->parsed()) return run_command(line.bound, registrar);
+  if (line.detection_app->parsed()) return run_command(line.detection, registrar);
   if (line.record_app->parsed()) return run_command(line.record, registrar);
   if (line.emulate_app->parsed()) return run_command(line.emulate, registrar);
   if (line.report_app->parsed()) return run_command(line.report, registrar);

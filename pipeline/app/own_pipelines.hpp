@@ -8,6 +8,7 @@ namespace crisp::app {
 /// Pipelines that are commands of their own: the files in configs/, as they were when crisp was built.
 extern const std::string_view kBasinPipeline;
 extern const std::string_view kBoundPipeline;
+extern const std::string_view kDetectionPipeline;
 extern const std::string_view kCalibratePipeline;
 extern const std::string_view kDiagnosePipeline;
 extern const std::string_view kConvertPipeline;

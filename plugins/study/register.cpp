@@ -3,6 +3,7 @@
 
 #include "plugins/study/basin_stage.hpp"
 #include "plugins/study/bound_stage.hpp"
+#include "plugins/study/detection_stage.hpp"
 #include "plugins/study/figures_stage.hpp"
 #include "plugins/study/monte_carlo_stage.hpp"
 
@@ -11,6 +12,7 @@ namespace crisp::study {
 void register_study(Registrar& registrar) {
   registrar.stage<BasinStage>();
   registrar.stage<BoundStage>();
+  registrar.stage<DetectionStage>();
   registrar.stage<FiguresStage>();
   registrar.stage<MonteCarloStage>();
 }

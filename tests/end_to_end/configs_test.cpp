@@ -37,10 +37,11 @@ TEST(Configs, EachPipelineHasATestThatRunsIt) {
     if (entry.path().extension() != ".yaml" || !read_yaml(entry.path()).find("pipeline")) continue;
     pipelines.push_back(entry.path().filename().string());
   }
-  EXPECT_THAT(pipelines, UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
-                                              "convert.yaml", "diagnose.yaml", "emulate.yaml", "figures.yaml",
-                                              "like_real.yaml", "live.yaml", "monte_carlo.yaml",
-                                              "picture.yaml", "record.yaml", "report.yaml", "simulate.yaml"));
+  EXPECT_THAT(pipelines,
+              UnorderedElementsAre("assemble.yaml", "basin.yaml", "bound.yaml", "calibrate.yaml",
+                                   "detection.yaml", "convert.yaml", "diagnose.yaml", "emulate.yaml",
+                                   "figures.yaml", "like_real.yaml", "live.yaml", "monte_carlo.yaml",
+                                   "picture.yaml", "record.yaml", "report.yaml", "simulate.yaml"));
 }
 
 TEST(Configs, SimulateWritesACaptureAndItsTruthAndAssembleMakesACloudOfThem) {
@@ -118,6 +119,20 @@ TEST(Configs, FiguresWritesTheColumnsOfThePapersFigures) {
   EXPECT_THAT(outcome.files,
               testing::IsSupersetOf({"fig4_beam.dat", "fig5_surface.dat", "fig6_tau.dat", "fig6_alpha.dat",
                                      "fig6_optimum.dat", "fig7_eta.dat", "summary.json"}));
+}
+
+TEST(Configs, DetectionWritesFromWhichSizeOnEffectsShow) {
+  const test::PipelineFixture fixture;
+  const auto outcome = fixture.run("detection.yaml", {}, "out", {"study.detection.duration=2s"});
+  EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
+  EXPECT_THAT(outcome.files, ElementsAre("detection.csv", "detection.csv.provenance.json", "summary.json"));
+  const auto effects = outcome.stage("study.detection")["report"]["effects"];
+  for (const char* cause : {"encoder.eccentricity", "laser1.mirror.cone", "laser3.range.incidence"}) {
+    ASSERT_TRUE(effects.contains(cause)) << cause;
+    EXPECT_GT(effects[cause].value("detectable", 0.0), 0) << cause;
+  }
+  EXPECT_FALSE(effects["laser1.mirror.cone"].contains("resolvable") &&
+               effects["laser1.mirror.cone"]["resolvable"] < effects["laser1.mirror.cone"]["detectable"]);
 }
 
 TEST(Configs, BoundWritesTheLeastErrorOfEachParameter) {

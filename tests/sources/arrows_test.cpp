@@ -103,7 +103,8 @@ bool may_include(const std::string& from, const std::string& to) {
   if (const auto layer = layer_of(from)) return layer_of(to) && *layer_of(to) < *layer;
   if (layer_of(to)) return !is_door(to);
   if (from == "plugins/study")
-    return to == "grabbers/simulate" || to == "plugins/calibrate";  // what it studies
+    return to == "grabbers/simulate" || to == "plugins/calibrate" ||
+           to == "plugins/diagnose";  // what it studies
   return from.starts_with("grabbers/") && to.starts_with("grabbers/");
 }
 

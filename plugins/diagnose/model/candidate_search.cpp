@@ -11,9 +11,7 @@
 #include "plugins/diagnose/model/conditional_score_test.hpp"
 
 namespace crisp::diagnose {
-namespace {
 
-/// Base parameters (λ, τ, α, η) that the refinement estimated.
 std::vector<std::size_t> base_of(const estimate::Refinement& refinement) {
   std::vector<std::size_t> base;
   for (const std::size_t parameter : refinement.outcome.free) {
@@ -21,6 +19,8 @@ std::vector<std::size_t> base_of(const estimate::Refinement& refinement) {
   }
   return base;
 }
+
+namespace {
 
 std::vector<Hypothesis::Competitor> competitors(const SelectedCandidate& choice,
                                                 const CandidateJacobian& jacobian) {

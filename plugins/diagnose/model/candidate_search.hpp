@@ -35,6 +35,9 @@ struct Limit {
   std::string combination;  ///< identifiable combination instead: see known_instead()
 };
 
+/// Indices of the base parameters (λ, τ, α, η) that a refinement estimated.
+std::vector<std::size_t> base_of(const estimate::Refinement& refinement);
+
 /// Score tests of all candidates at one model (Rao's score test on the linearized problem).
 class CandidateSearch {
  public:

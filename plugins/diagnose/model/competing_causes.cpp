@@ -60,6 +60,18 @@ SelectedCandidate Competition::with_competitors(const std::vector<std::size_t>& 
   return choice;
 }
 
+std::vector<std::vector<std::size_t>> Competition::replacements_of(std::size_t one) const {
+  const auto& candidates = jacobian_.candidates();
+  std::vector<std::vector<std::size_t>> all;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (!candidates[c].is_cause() || candidates[c].is_fine || !could_replace(c, one)) continue;
+    all.push_back(with_levels({c}));
+    std::erase_if(all.back(),
+                  [&](std::size_t other) { return candidates[other].is_of_family(candidates[one]); });
+  }
+  return all;
+}
+
 double Competition::remaining(const std::vector<std::size_t>& some, const std::vector<std::size_t>& instead,
                               const std::vector<std::size_t>& taken) const {
   const auto is_in = [](const std::vector<std::size_t>& all, std::size_t one) {

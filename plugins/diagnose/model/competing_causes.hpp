@@ -44,6 +44,9 @@ class Competition {
   /// with the other family in all of them.
   SelectedCandidate with_competing_families(const std::vector<std::size_t>& taken, std::size_t one) const;
 
+  /// The candidates of other families that act on the same beams, each with the levels that are conventions.
+  std::vector<std::vector<std::size_t>> replacements_of(std::size_t one) const;
+
  private:
   /// Decrease of the BIC by some selected candidates where others stand in their place.
   double remaining(const std::vector<std::size_t>& some, const std::vector<std::size_t>& instead,

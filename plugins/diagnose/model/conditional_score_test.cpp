@@ -51,15 +51,14 @@ std::vector<std::size_t> columns_of(const std::vector<std::size_t>& some, const 
   return columns;
 }
 
-/// A form that was chosen from a grid counts as a parameter.
+}  // namespace
+
 double price_of_forms(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian,
                       std::size_t beams) {
   const auto forms =
       std::ranges::count_if(some, [&](std::size_t c) { return jacobian.candidates()[c].forms > 1; });
   return static_cast<double>(forms) * std::log(static_cast<double>(beams));
 }
-
-}  // namespace
 
 ScoreTest joint_score_test(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian,
                            const NormalEquations& left) {
@@ -68,11 +67,15 @@ ScoreTest joint_score_test(const std::vector<std::size_t>& some, const Candidate
   return test;
 }
 
+NormalEquations equations_given(const std::vector<std::size_t>& taken, const std::vector<std::size_t>& some,
+                                const CandidateJacobian& jacobian, const NormalEquations& equations) {
+  return equations.reduced(columns_of(some, jacobian), estimated_with(taken, jacobian));
+}
+
 ScoreTest joint_score_test_given(const std::vector<std::size_t>& taken, const std::vector<std::size_t>& some,
                                  const CandidateJacobian& jacobian, const NormalEquations& equations) {
-  const std::vector<std::size_t> own = columns_of(some, jacobian);
-  const NormalEquations left = equations.reduced(own, estimated_with(taken, jacobian));
-  std::vector<std::size_t> all(own.size());
+  const NormalEquations left = equations_given(taken, some, jacobian, equations);
+  std::vector<std::size_t> all(static_cast<std::size_t>(left.vector.size()));
   std::iota(all.begin(), all.end(), std::size_t{0});
   ScoreTest test = score_test(left, all);
   test.bic -= price_of_forms(some, jacobian, left.beams);

@@ -37,10 +37,21 @@ std::vector<std::optional<ScoreTest>> score_tests_given(const std::vector<std::s
                                                         const CandidateJacobian& jacobian,
                                                         const quality::NormalEquations& equations);
 
+/// Normal equations of some candidates alone, after eliminating the base parameters and those in `taken`,
+/// among which they are not.
+quality::NormalEquations equations_given(const std::vector<std::size_t>& taken,
+                                         const std::vector<std::size_t>& some,
+                                         const CandidateJacobian& jacobian,
+                                         const quality::NormalEquations& equations);
+
 /// Joint score test of some candidates given those in `taken`, among which they are not.
 ScoreTest joint_score_test_given(const std::vector<std::size_t>& taken, const std::vector<std::size_t>& some,
                                  const CandidateJacobian& jacobian,
                                  const quality::NormalEquations& equations);
+
+/// Price of some candidates' forms in the BIC: one that was chosen from a grid counts as a parameter.
+double price_of_forms(const std::vector<std::size_t>& some, const CandidateJacobian& jacobian,
+                      std::size_t beams);
 
 /// Identifiable combinations of a hardly observable candidate with the base parameters and those in `taken`:
 /// see known_with(). Empty where those explain less than nearly all of the candidate's effect, because the

@@ -56,11 +56,25 @@ class Diagnoser {
     report(0.9, "simulating the scanner");
     result.left_before = left_by(result.before);
     result.left_after = result.hypotheses.empty() ? result.left_before : left_by(result.after);
+    if (has_open_questions(result)) result.proposals = proposed(result.after);
     add_form_errors(result);
     return result;
   }
 
  private:
+  bool has_open_questions(const Diagnosis& result) const {
+    return !result.unobservable.empty() || std::ranges::any_of(result.hypotheses, [&](const Hypothesis& one) {
+      return one.accepted && !one.competitors.empty() &&
+             one.competitors.front().behind < settings_.selection.odds;
+    });
+  }
+
+  std::vector<RecordingProposal> proposed(const estimate::Refinement& fit) {
+    report(0.95, "predicting other recordings");
+    return propose_recordings(fit.outcome.model, base_of(fit), observed(fit.outcome.model), terms_,
+                              settings_);
+  }
+
   void accept(Diagnosis& result) {
     report(0.8, "cross-validating on held-out turns");
     const CrossValidator validator(halves_of(inside_), result.before.outcome.model,
@@ -160,9 +174,7 @@ class Diagnoser {
         report(fraction, fmt::format("round {}: {}", round + 1, what));
       };
       state.report(0, "testing all candidates");
-      const SurfaceObservations observations(result.after.outcome.model, inside_,
-                                             settings_.refinement.surfels, settings_.beams,
-                                             settings_.interrupted);
+      const SurfaceObservations& observations = observed(result.after.outcome.model);
       result.unshared = unshared_causes(terms_, observations.coverage());
       const CandidateSearch search = test(observations, state, result);
       result.settled = names_of(result.hypotheses) == names_of(state.chosen);
@@ -230,10 +242,20 @@ class Diagnoser {
 
   ProfileComparison left_by(const estimate::Refinement& refinement) const {
     const SensorModel& model = refinement.outcome.model;
-    return comparisons_.of(model, [&] {
-      const SurfaceObservations observations(model, inside_, settings_.refinement.surfels, settings_.beams);
-      return compare_with_simulation(observations, settings_.refinement.surfels, 1);
-    });
+    return comparisons_.of(
+        model, [&] { return compare_with_simulation(observed(model), settings_.refinement.surfels, 1); });
+  }
+
+  /// The surfaces of a model, found once for what follows with the same model. Valid until those of another.
+  const SurfaceObservations& observed(const SensorModel& model) const {
+    if (!observed_ || observed_->model.names() != model.names() ||
+        !std::ranges::equal(observed_->model.values(), model.values())) {
+      observed_.reset();
+      observed_.emplace(Observed{.model = model,
+                                 .observations = {model, inside_, settings_.refinement.surfels,
+                                                  settings_.beams, settings_.interrupted}});
+    }
+    return observed_->observations;
   }
 
   const estimate::Sample& sample_;
@@ -244,6 +266,11 @@ class Diagnoser {
   estimate::LagRange lags_{.earliest = -std::numeric_limits<double>::infinity(),
                            .latest = std::numeric_limits<double>::infinity()};
   estimate::Sample inside_;
+  struct Observed {
+    SensorModel model;
+    SurfaceObservations observations;
+  };
+  mutable std::optional<Observed> observed_;
   mutable PerModel<ProfileComparison> comparisons_;
 };
 

@@ -9,6 +9,7 @@
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/diagnose/model/candidate_search.hpp"
 #include "plugins/diagnose/model/hypothesis.hpp"
+#include "plugins/diagnose/model/recording_proposals.hpp"
 #include "plugins/diagnose/model/residual_profiles.hpp"
 
 namespace crisp::diagnose {
@@ -25,6 +26,8 @@ struct Diagnosis {
   std::vector<std::string> unshared;  ///< terms that were not tested: recordings cannot share them
   std::size_t tests = 0;              ///< number of different candidates tested
   bool settled = false;               ///< whether the last selection added nothing to the extended model
+  /// Of what these data do not show, or do not resolve; none if there is nothing of the kind.
+  std::vector<RecordingProposal> proposals;
   ProfileComparison left_before;
   ProfileComparison left_after;
 };

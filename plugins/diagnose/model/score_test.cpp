@@ -11,10 +11,8 @@
 #include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp::diagnose {
-namespace {
 
-/// Observable directions of the parameters, scaled to unit effect.
-Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& squares) {
+Eigen::MatrixXd observable_directions(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& squares) {
   constexpr double kNothing = 1e-3;  // share of a parameter's own squared effect
   const Eigen::VectorXd scale =
       squares.unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
@@ -25,6 +23,8 @@ Eigen::MatrixXd seen_directions(const Eigen::MatrixXd& matrix, const Eigen::Vect
   return scale.asDiagonal() * eigen.vectors.rightCols(seen) *
          eigen.values.tail(seen).cwiseSqrt().cwiseInverse().asDiagonal();
 }
+
+namespace {
 
 /// Covariance of steps along the observable directions, and its excess over independent errors.
 struct StepSpread {
@@ -114,7 +114,7 @@ double ScoreTest::design_effect() const {
 ScoreTest score_test(const quality::NormalEquations& equations, const std::vector<std::size_t>& of) {
   const Eigen::MatrixXd matrix = equations.matrix(of, of);
   const Eigen::VectorXd squares = equations.squares(of);
-  const Eigen::MatrixXd seen = seen_directions(matrix, squares);
+  const Eigen::MatrixXd seen = observable_directions(matrix, squares);
   const Eigen::VectorXd steps = -seen.transpose() * equations.vector(of);
   ScoreTest test;
   test.gain = steps.squaredNorm() / equations.covariance_factor();

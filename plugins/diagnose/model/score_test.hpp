@@ -34,6 +34,13 @@ struct ScoreTest {
   double identifiability() const { return whole > 0 ? visible * visible / (whole * whole) : 0; }
 };
 
+/// p × q: directions of p parameters of which a thousandth or more is left (in squares), each such that a
+/// unit of it gains 1. The others are unobservable.
+///
+/// @param matrix   p × p: of the normal equations
+/// @param squares  p: see NormalEquations
+Eigen::MatrixXd observable_directions(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& squares);
+
 /// Tests parameters jointly. Unobservable directions are held at zero.
 ///
 /// @param equations  with divisions into blocks, after eliminating the jointly estimated parameters

@@ -77,9 +77,8 @@ class Chooser {
   /// are blocks are exempt: cross-validation decides on them.
   bool is_rejected(std::size_t candidate, const ScoreTest& test) const {
     const Candidate& which = jacobian_.candidates()[candidate];
-    constexpr double kSmallGain = 50;  // half of what a hundred blocks gain by chance
     const bool is_exempt = which.is_fine || (which.is_shape() && !test.is_testable);
-    const bool has_valid_p = (which.in_model || test.gain < kSmallGain) && !is_exempt;
+    const bool has_valid_p = (which.in_model || test.gain < settings_.untested) && !is_exempt;
     return rejected_.contains(which.name) ||
            (has_valid_p && !(test.p_value * static_cast<double>(tests_) < settings_.p_value));
   }

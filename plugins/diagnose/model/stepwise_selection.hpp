@@ -11,8 +11,10 @@ namespace crisp::diagnose {
 
 /// Thresholds of the stepwise selection.
 struct SelectionSettings {
-  double bic = 10;         ///< minimum decrease of the BIC
-  double p_value = 1e-3;   ///< significance level, before correction for multiple testing
+  double bic = 10;        ///< minimum decrease of the BIC
+  double p_value = 1e-3;  ///< significance level, before correction for multiple testing
+  double untested =
+      50;  ///< gain (2 nat) from which on what the model lacks is selected without a test by blocks
   double visible = 0.015;  ///< [σ] minimum RMS change of ranges: edges and bumps of surfaces make less
   double odds = 9.2;       ///< difference in BIC below which two causes are not resolvable (Bayes factor 100)
   std::size_t most = 12;   ///< maximum number of selected candidates

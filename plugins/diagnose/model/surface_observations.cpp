@@ -78,6 +78,18 @@ Surfels thinned(const Surfels& surfels, std::size_t most) {
 
 }  // namespace
 
+Coverage coverage_of(const estimate::Sample& sample) {
+  constexpr double kNearlyAll = 0.99;
+  auto ranges = sample.beams.range;
+  const auto [first, last] = std::ranges::minmax(sample.beams.time);
+  const auto recordings = data::recordings_of(*sample.plate);
+  return {.first = first,
+          .last = last,
+          .farthest = statistics::quantile_in_place(ranges, kNearlyAll),
+          .one_begin = recordings.size() < 2,
+          .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
+}
+
 SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sample sample,
                                          const quality::SurfelSettings& settings, std::size_t most,
                                          std::function<bool()> interrupted, SurfacesOf of)
@@ -96,15 +108,7 @@ SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sam
   noise_ = estimate::relative_noise(all_, placed_.view(), sample_.beams, settings_);
   if (!noise_.empty()) quality::refine_all(all_, beams(), settings_);
   surfels_ = thinned(all_, most);
-  constexpr double kNearlyAll = 0.99;
-  auto ranges = sample_.beams.range;
-  const auto [first, last] = std::ranges::minmax(sample_.beams.time);
-  const auto recordings = data::recordings_of(*sample_.plate);
-  coverage_ = {.first = first,
-               .last = last,
-               .farthest = statistics::quantile_in_place(ranges, kNearlyAll),
-               .one_begin = recordings.size() < 2,
-               .one_zero = recordings.empty() || recordings.front().zero == recordings.back().zero};
+  coverage_ = coverage_of(sample_);
   shared_ = estimate::shared_errors(sample_.beams, all_, beams());
 }
 

@@ -15,6 +15,9 @@ namespace crisp::diagnose {
 /// that it begins with, which neither grow into edges nor end before them, for what edges do to ranges.
 enum class SurfacesOf { kRefinement, kSearch };
 
+/// @param sample  at least one beam
+Coverage coverage_of(const estimate::Sample& sample);
+
 /// Flat surfaces in the beams of a sample, with the normal equations at a model. Surfaces are selected
 /// without regard to the agreement of the views on them.
 class SurfaceObservations {

@@ -90,7 +90,11 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
                                     .scope = name_of(competitor.owner, calibration),
                                     .log10_bayes_factor = competitor.behind / 2 / std::numbers::ln10});
   }
-  finding.resolvable_by = resolvable_by(finding, terms);
+  if (!finding.confounded_with.empty())
+    finding.resolvable_by =
+        resolving(diagnosis.proposals, hypothesis.candidate.cause_name(), hypothesis.test.ranges);
+  const std::vector<std::string> needs = resolvable_by(finding, terms);
+  finding.resolvable_by.insert(finding.resolvable_by.end(), needs.begin(), needs.end());
   return finding;
 }
 
@@ -253,8 +257,11 @@ Findings findings_of(const Diagnosis& diagnosis, const Calibration& calibration,
   }
   add_left_over(diagnosis.left_after, calibration, settings.visible * noise, all);
   for (const Limit& limit : diagnosis.unobservable) {
+    std::vector<std::string> needs = {showing(diagnosis.proposals, limit.name, limit.size),
+                                      resolvable_by(limit.name, terms)};
+    std::erase(needs, std::string());
     all.unobservable.push_back({.parameter = limit.name,
-                                .reason = reason_of(limit, resolvable_by(limit.name, terms)),
+                                .reason = reason_of(limit, fmt::format("{}", fmt::join(needs, "; "))),
                                 .combination = limit.combination});
   }
   for (const std::string& cause : diagnosis.unshared) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include <crisp/context.hpp>
+#include <crisp/stage_description.hpp>
+
+#include "grabbers/simulate/scenario.hpp"
+#include "plugins/study/effect_detection.hpp"
+
+namespace crisp::study {
+
+/// `study.detection`: computes from which size on a planned recording shows each effect, and resolves its
+/// cause.
+class DetectionStage final : public Stage {
+ public:
+  static void describe(StageDescription<DetectionStage>& d);
+
+  void check(const RunSettings& run) const override;
+  void process(const Inputs& in, Outputs& out, Context& context) override;
+  void finish(Outputs& out, Context& context) override;
+
+ private:
+  // Target of the options.
+  simulate::MotionSettings& motion() { return scanner_.motion; }
+
+  simulate::ScannerSettings scanner_;
+  simulate::SceneChoice scene_;
+  simulate::TruthChoice truth_;
+  simulate::KindChoice kinds_;
+  std::filesystem::path file_;
+  EffectDetection detection_;
+};
+
+}  // namespace crisp::study
