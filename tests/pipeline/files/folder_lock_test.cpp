@@ -93,8 +93,18 @@ TEST(FolderLock, RefusesASecondOneAndNamesProcessHostAndSinceWhen) {
 
 TEST(FolderLock, RefusesAnotherProcess) {
   const test::TemporaryFolder folder;
+  std::array<int, 2> gate{};
+  ASSERT_EQ(pipe(gate.data()), 0);
+  // Before the lock has a thread: what that allocates while a process is forked stays locked in the child.
+  const pid_t other = start_process([&] {
+    char open = 0;
+    return read(gate[0], &open, 1) == 1 && !refusal_in(folder.path()).empty() ? 7 : 0;
+  });
   const FolderLock lock(folder.path());
-  EXPECT_EQ(status_of_ended(start_process([&] { return refusal_in(folder.path()).empty() ? 0 : 7; })), 7);
+  EXPECT_EQ(write(gate[1], "x", 1), 1);
+  EXPECT_EQ(status_of_ended(other), 7);
+  close(gate[0]);
+  close(gate[1]);
 }
 
 TEST(FolderLock, LeavesNothingBehindAndLetsTheNextOneIn) {
