@@ -142,7 +142,7 @@ TEST(FolderLock, IsTakenOverFromADeadProcessWhoseNumberAnotherHasNow) {
   auto owner = parse_lock_owner(test::bytes_of(file));
   ASSERT_TRUE(owner);
   owner->process.number = getpid();  // which lives, but started at another time
-  owner->process.start -= 1;
+  owner->process.start += 100000;    // clock ticks: far from that of this process
   test::put_bytes(file, to_json_text(*owner));
   EXPECT_EQ(refusal_in(folder.path()), "");
 }
