@@ -120,6 +120,8 @@ struct CommandLine {
                          std::initializer_list<std::pair<std::string, std::string>> names_and_help);
   /// A study can be divided, and is merged then.
   static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
+  /// Options of a study of a recording that is planned.
+  void add_planned_recording(CLI::App* to, const std::string& stage, RunRequest& request);
   void add_studies();
   void add_bound();
   void add_detection();

@@ -83,12 +83,8 @@ void CommandLine::add_studies() {
   add_figures();
 }
 
-void CommandLine::add_bound() {
-  bound_app = command_of(*study_app, "bound",
-                         "Compute the Cramer-Rao bound of the parameters for a planned recording");
-  add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out/bound", "--threads", bound);
-  add_rig(bound_app, bound.arguments);
-  add_stage_options(bound_app, "study.bound", bound,
+void CommandLine::add_planned_recording(CLI::App* to, const std::string& stage, RunRequest& request) {
+  add_stage_options(to, stage, request,
                     {{"scene", kScenes},
                      {"scene_file", "Scene file in YAML"},
                      {"duration", "Duration of the recording: 10s"},
@@ -96,8 +92,17 @@ void CommandLine::add_bound() {
                      {"min_rate", "Lowest rate of a varying motion: 0Hz"},
                      {"max_rate", "Highest rate, or the constant rate: 2Hz"},
                      {"noise", "Standard deviation of a range: 12mm"},
-                     {"beams", "all, or in_plane: the two beams of each laser in the plate's plane"},
                      {"calibration", "Calibration of the scanner, instead of the nominal values"}});
+}
+
+void CommandLine::add_bound() {
+  bound_app = command_of(*study_app, "bound",
+                         "Compute the Cramer-Rao bound of the parameters for a planned recording");
+  add_own_pipeline(bound_app, "bound.yaml", kBoundPipeline, "out/bound", "--threads", bound);
+  add_rig(bound_app, bound.arguments);
+  add_planned_recording(bound_app, "study.bound", bound);
+  add_stage_options(bound_app, "study.bound", bound,
+                    {{"beams", "all, or in_plane: the two beams of each laser in the plate's plane"}});
 }
 
 void CommandLine::add_detection() {
@@ -107,15 +112,7 @@ void CommandLine::add_detection() {
   add_own_pipeline(detection_app, "detection.yaml", kDetectionPipeline, "out/detection", "--threads",
                    detection);
   add_rig(detection_app, detection.arguments);
-  add_stage_options(detection_app, "study.detection", detection,
-                    {{"scene", kScenes},
-                     {"scene_file", "Scene file in YAML"},
-                     {"duration", "Duration of the recording: 10s"},
-                     {"motion", "Motion of the plate: constant, varying, reversal, stop_and_go"},
-                     {"min_rate", "Lowest rate of a varying motion: 0Hz"},
-                     {"max_rate", "Highest rate, or the constant rate: 2Hz"},
-                     {"noise", "Standard deviation of a range: 12mm"},
-                     {"calibration", "Calibration of the scanner, instead of the nominal values"}});
+  add_planned_recording(detection_app, "study.detection", detection);
 }
 
 void CommandLine::add_basin() {

@@ -88,7 +88,7 @@ class Resolver {
     return others;
   }
 
-  /// [m] Size of a level beside which the data bound the curve of its cause to less than half: see
+  /// [m] Size of a level from which on the data bound its cause's curve to less than half of it: see
   /// Competition.
   double level_size(std::size_t curve) const {
     constexpr double kErrors = 2;
