@@ -15,14 +15,11 @@
 #include "pipeline/estimate/placed_beams.hpp"
 #include "pipeline/estimate/surfel_jacobian.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp::estimate {
 namespace {
-
-Eigen::Vector3d point(const PointsView& points, std::uint32_t i) {
-  return {points.x[i], points.y[i], points.z[i]};
-}
 
 /// Each true plane as a surfel of all the beams that meet it.
 quality::Surfels surfels_of_truth(const quality::BeamsView& beams, std::span<const std::uint32_t> surface,
@@ -37,10 +34,11 @@ quality::Surfels surfels_of_truth(const quality::BeamsView& beams, std::span<con
   for (std::size_t s = 0; s < normals.size(); ++s) {
     if (members[s].empty()) continue;
     quality::Surfel surfel{.middle = Eigen::Vector3d::Zero(), .normal = normals[s]};
-    for (const auto i : members[s]) surfel.middle += point(beams.points, i);
+    for (const auto i : members[s]) surfel.middle += quality::vector_at(beams.points, i);
     surfel.middle /= static_cast<double>(members[s].size());
     double squares = 0;
-    for (const auto i : members[s]) squares += (point(beams.points, i) - surfel.middle).squaredNorm();
+    for (const auto i : members[s])
+      squares += (quality::vector_at(beams.points, i) - surfel.middle).squaredNorm();
     constexpr double kSmallest = 1e-3;  // [m] a plane that one beam meets must not divide by nothing
     surfel.radius = std::max(kSmallest, std::sqrt(squares / static_cast<double>(members[s].size())));
     surfel.u = surfel.normal.unitOrthogonal();

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
 
 namespace crisp::estimate {
@@ -30,7 +31,7 @@ static_assert(kPlaces * kPlaces == kPlacesOfEach);
 /// Intersection of a beam with a surface's plane, independent of the point's noise: otherwise beams would be
 /// sorted by their noise.
 Eigen::Vector2d foot_on(const quality::Surfel& surfel, const quality::BeamsView& beams, std::uint32_t i) {
-  const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
+  const Eigen::Vector3d point = quality::vector_at(beams.points, i);
   const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
   const double incidence = surfel.normal.dot(direction);
   const Eigen::Vector3d from_middle = point - surfel.middle;

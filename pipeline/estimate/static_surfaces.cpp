@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp::estimate {
@@ -27,7 +28,7 @@ Spread spread_of_views(const quality::Surfel& surfel, const quality::Surfels& su
   View all;
   for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
     const std::uint32_t beam = surfels.members[k];
-    const Eigen::Vector3d point(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]);
+    const Eigen::Vector3d point = quality::vector_at(beams.points, beam);
     const double weight = surfels.weights[k];
     const double moment = weight * surfel.normal.dot(point - surfel.middle);
     View& own = parts[beams.views[beam]];

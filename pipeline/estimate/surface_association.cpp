@@ -9,6 +9,7 @@
 #include <span>
 
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::estimate {
 namespace {
@@ -20,15 +21,11 @@ using quality::SurfelSettings;
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr double kGrazing = 0.05;  // as where surfels are fitted
 
-Eigen::Vector3d at(const PointsView& points, std::uint32_t i) {
-  return {points.x[i], points.y[i], points.z[i]};
-}
-
 /// A surfel with its borders: the box around its beams in (u, v) [m], from its middle.
 class Claimant {
  public:
   Claimant(const quality::Surfel& surfel, const Surfels& surfels, const BeamsView& beams) : surfel_(surfel) {
-    for (const std::uint32_t i : surfels.beams_of(surfel)) take(at(beams.points, i));
+    for (const std::uint32_t i : surfels.beams_of(surfel)) take(quality::vector_at(beams.points, i));
   }
 
   void take(const Eigen::Vector3d& end) {
@@ -110,8 +107,8 @@ std::uint32_t owner(const std::vector<Claimant>& claimants, const std::vector<st
   std::uint32_t best = kNone;
   Claimant::Meeting least;
   for (const std::uint32_t s : near) {
-    const auto hit =
-        claimants[s].meeting(at(beams.points, beam), at(beams.directions, beam), settings, associations);
+    const auto hit = claimants[s].meeting(quality::vector_at(beams.points, beam),
+                                          quality::vector_at(beams.directions, beam), settings, associations);
     if (!hit || hit->beyond > claimants[s].reach(associations)) continue;
     const auto is_better = [&] {
       if (best == kNone) return true;
@@ -130,7 +127,7 @@ std::vector<std::uint32_t> near_any(const std::vector<Claimant>& claimants, cons
                                     std::span<const std::uint32_t> some, const SurfelSettings& settings,
                                     const AssociationSettings& associations) {
   Eigen::AlignedBox3d ends;
-  for (const std::uint32_t beam : some) ends.extend(at(beams.points, beam));
+  for (const std::uint32_t beam : some) ends.extend(quality::vector_at(beams.points, beam));
   std::vector<std::uint32_t> near;
   for (std::uint32_t s = 0; s < claimants.size(); ++s) {
     if (claimants[s].may_associate_in(ends, settings, associations)) near.push_back(s);
@@ -204,7 +201,7 @@ Surfels grow_surfaces(const Surfels& surfels, const BeamsView& beams, const Surf
     for (std::size_t k = 0; k < left.size(); ++k) {
       if (takers[k] == kNone) continue;
       owner_of[left[k]] = takers[k];
-      claimants[takers[k]].take(at(beams.points, left[k]));
+      claimants[takers[k]].take(quality::vector_at(beams.points, left[k]));
     }
   } while (left.size() != before);
   return sorted_by_owner(surfels.surfels, owner_of, settings);

@@ -14,6 +14,7 @@
 
 #include "pipeline/data/recordings.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp::estimate {
@@ -133,16 +134,13 @@ class Pieces {
   static constexpr double kSide = 1;    // [m] of a piece
   static constexpr double kCell = 0.1;  // [m]
 
-  static Eigen::Vector3d vector(const PointsView& all, std::size_t i) {
-    return {all.x[i], all.y[i], all.z[i]};
-  }
   Cell cell(const Eigen::Vector3d& from_middle, double side) const {
     return {static_cast<int>(std::floor(surfel_.u.dot(from_middle) / side)),
             static_cast<int>(std::floor(surfel_.v.dot(from_middle) / side))};
   }
 
   void add(std::uint32_t beam) {
-    const Eigen::Vector3d point = vector(beams_.points, beam);
+    const Eigen::Vector3d point = quality::vector_at(beams_.points, beam);
     const Eigen::Vector3d from_middle = point - surfel_.middle;
     Piece& piece = pieces_.try_emplace(cell(from_middle, kSide), partition_.views.size()).first->second;
     piece.distances[partition_.of_beam[beam]].push_back(surfel_.normal.dot(from_middle));
@@ -153,10 +151,10 @@ class Pieces {
   void find_through(std::uint32_t beam) {
     constexpr double kInFront = 0.3;  // [m] of a surface: what ends farther off has met something else
     constexpr double kGrazing = 0.1;  // cosine of incidence
-    const Eigen::Vector3d direction = vector(beams_.directions, beam);
+    const Eigen::Vector3d direction = quality::vector_at(beams_.directions, beam);
     const double cosine = surfel_.normal.dot(direction);
     if (std::abs(cosine) < kGrazing) return;
-    const Eigen::Vector3d from_middle = vector(beams_.points, beam) - surfel_.middle;
+    const Eigen::Vector3d from_middle = quality::vector_at(beams_.points, beam) - surfel_.middle;
     const double on = -surfel_.normal.dot(from_middle) / cosine;
     if (on > kInFront) return;
     const Eigen::Vector3d crossing = from_middle + on * direction;

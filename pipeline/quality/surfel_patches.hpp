@@ -10,6 +10,7 @@
 #include "pipeline/quality/plane.hpp"
 #include "pipeline/quality/spatial_order.hpp"
 #include "pipeline/quality/surfels.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::quality {
 
@@ -25,7 +26,7 @@ struct SurfelCells {
   std::size_t size() const { return key.size(); }
   /// End of a beam, relative to the origin.
   Eigen::Vector3d point(const BeamsView& beams, std::uint32_t beam) const {
-    return Eigen::Vector3d(beams.points.x[beam], beams.points.y[beam], beams.points.z[beam]) - origin;
+    return vector_at(beams.points, beam) - origin;
   }
 };
 

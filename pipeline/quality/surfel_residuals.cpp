@@ -9,6 +9,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/plane.hpp"
 #include "pipeline/quality/surfel_weights.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::quality {
 namespace {
@@ -58,7 +59,7 @@ std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const
   for_blocks(members.size(), kResidualBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = members[k];
-      const Eigen::Vector3d point(beams.points.x[i], beams.points.y[i], beams.points.z[i]);
+      const Eigen::Vector3d point = vector_at(beams.points, i);
       const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
       residuals[k] = against(surfel, point, direction, settings.noise * beams.noise_of(i), settings.floor);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/quality/vector_at.hpp"
 #include "plugins/report/cell_runs.hpp"
 
 namespace crisp::report {
@@ -18,10 +19,10 @@ quality::Plane plane_of_run(const CellRun& run, const PointsView& points,
                             const quality::SpatialOrder& order) {
   quality::Moments moments;
   const std::uint32_t first = order.index[run.begin];
-  const Eigen::Vector3d origin(points.x[first], points.y[first], points.z[first]);
+  const Eigen::Vector3d origin = quality::vector_at(points, first);
   for (std::size_t k = run.begin; k < run.end; ++k) {
     const std::uint32_t i = order.index[k];
-    moments.add(Eigen::Vector3d(points.x[i], points.y[i], points.z[i]) - origin);
+    moments.add(quality::vector_at(points, i) - origin);
   }
   quality::Plane plane = quality::plane_of(moments);
   plane.middle += origin;
@@ -33,7 +34,7 @@ quality::Plane plane_of_run(const CellRun& run, const PointsView& points,
 
 double LocalPlanes::distance(std::size_t point, const PointsView& points) const {
   if (of[point] == kNone) return std::numeric_limits<double>::quiet_NaN();
-  return planes[of[point]].distance({points.x[point], points.y[point], points.z[point]});
+  return planes[of[point]].distance(quality::vector_at(points, point));
 }
 
 double LocalPlanes::incidence(std::size_t point, const Eigen::Vector3d& direction) const {

@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
 
-#include "grabbers/simulate/device_effects.hpp"
-#include "grabbers/simulate/scenario_options.hpp"
 #include "plugins/study/bound_text.hpp"
 #include "plugins/study/parameter_kind.hpp"
 
@@ -60,56 +57,20 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
       "For comparison, `refine` adds the standard errors that calibrate.refine estimates on one such recording with noise.\n\n"
       "The scanner has the rig's nominal values, or those of `calibration`. The plate's encoder and the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. A second bound counts the steps of the rig's encoder as well, as normal noise of the plate's angle.\n\n"
       "A parameter counts as determined against the prior of calibrate.refine: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
-  simulate::describe_scene(d, &BoundStage::scene_);
+  describe_planned(d, &BoundStage::planned_);
   d.option("beams", &BoundStage::beams_,
            "beams used: the whole field of view, or the paper's two in the plate's plane")
       .choices({{"all", BeamChoice::kAll}, {"in_plane", BeamChoice::kInPlane}});
-  d.option("duration", &BoundStage::scanner_, &simulate::ScannerSettings::duration,
-           "duration of the recording; from some ten seconds on errors decrease with its square root")
-      .unit("s")
-      .range(0.01, 100);
-  d.option("noise", &BoundStage::scanner_, &simulate::ScannerSettings::range, &simulate::RangeSettings::sigma,
-           "standard deviation of a range")
-      .unit("m")
-      .range(1e-6, 10);
-  simulate::describe_motion(d, &BoundStage::motion);
-  simulate::describe_truth(d, &BoundStage::truth_);
-  simulate::describe_field(d, &BoundStage::scanner_);
-  simulate::describe_kinds(d, &BoundStage::kinds_);
   d.option("refine", &BoundStage::refine_,
            "whether to add the standard errors of calibrate.refine on a simulated recording");
   d.option("file", &BoundStage::file_, "output file of the bounds, CSV").writes();
 }
 
-std::vector<simulate::Effect> BoundStage::effects(const RunSettings& run) const {
-  return simulate::read_effects(truth_.effects, run.rig,
-                                simulate::recording_catalogue(simulate::known_terms(run)));
-}
-
-void BoundStage::check(const RunSettings& run) const {
-  check_all(
-      [&] {
-        Calibration truth = truth_.drawn(run, run.seed);
-        simulate::add_terms(truth, effects(run), simulate::known_terms(run));
-      },
-      [&] { simulate::make_motion(scanner_.motion, scanner_.duration, run.seed); },
-      [&] { scanner_.field.beams(); },
-      [&] {
-        simulate::ScannerSettings planned = scanner_;
-        planned.rig = run.rig;
-        kinds_.apply(planned);
-      });
-}
+void BoundStage::check(const RunSettings& run) const { planned_.check(run); }
 
 void BoundStage::process(const Inputs&, Outputs&, Context& context) {
-  simulate::ScannerSettings scanner = scanner_;
-  scanner.rig = context.rig();
-  kinds_.apply(scanner);
-  scanner.seed = context.seed();
-  scanner.truth = truth_.load(context, scanner.seed);
-  simulate::add_terms(scanner.truth, effects(context.run()), simulate::known_terms(context.run()));
-  const simulate::Scene scene = scene_.load(context);
-  const simulate::Motion motion = simulate::make_motion(scanner.motion, scanner.duration, scanner.seed);
+  const PlannedRecording::Prepared planned = planned_.prepared(context);
+  const auto& [scanner, scene, motion] = planned;
   const TermRegistry& terms = simulate::known_terms(context.run());
   context.progress(0, "bound");
   bound_ = scene_bound(scanner, scene, motion, beams_, terms);
@@ -118,10 +79,11 @@ void BoundStage::process(const Inputs&, Outputs&, Context& context) {
     context.progress(0.3, "calibrate.refine");
     refinement_ = refinement_accuracy(scanner, scene, motion, beams_, bound_.parameters, terms);
   }
-  report(scene, context);
+  report(planned, context);
 }
 
-void BoundStage::report(const simulate::Scene& scene, Context& context) const {
+void BoundStage::report(const PlannedRecording::Prepared& planned, Context& context) const {
+  const simulate::Scene& scene = planned.scene;
   context.report({{"scene", scene.name},
                   {"beams", bound_.beams},
                   {"no_echo", bound_.no_echo},
@@ -130,8 +92,8 @@ void BoundStage::report(const simulate::Scene& scene, Context& context) const {
                   {"unobservable", unobservable_json(bound_)}});
   const auto hit = std::ranges::count_if(bound_.beams_on, [](std::size_t beams) { return beams > 0; });
   context.print(fmt::format("{:g} s in the {}: {} beams on {} surfaces, {} without echo; noise {:g} mm",
-                            scanner_.duration, scene.name, bound_.beams, hit, bound_.no_echo,
-                            scanner_.range.sigma * 1e3));
+                            planned.scanner.duration, scene.name, bound_.beams, hit, bound_.no_echo,
+                            planned.scanner.range.sigma * 1e3));
   if (!refinement_ || !refinement_->failure.empty()) return;
   context.report({{"refined_beams", refinement_->beams}, {"refined_surfaces", refinement_->surfaces}});
   context.print(fmt::format("calibrate.refine finds {} flat surfaces with {} of them", refinement_->surfaces,

@@ -7,7 +7,7 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-#include "grabbers/simulate/scenario.hpp"
+#include "plugins/study/planned_recording.hpp"
 #include "plugins/study/refinement_accuracy.hpp"
 #include "plugins/study/scene_bound.hpp"
 
@@ -23,16 +23,9 @@ class BoundStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  // Target of the options.
-  simulate::MotionSettings& motion() { return scanner_.motion; }
+  void report(const PlannedRecording::Prepared& planned, Context& context) const;
 
-  void report(const simulate::Scene& scene, Context& context) const;
-  std::vector<simulate::Effect> effects(const RunSettings& run) const;
-
-  simulate::ScannerSettings scanner_;
-  simulate::SceneChoice scene_;
-  simulate::TruthChoice truth_;
-  simulate::KindChoice kinds_;
+  PlannedRecording planned_;
   BeamChoice beams_ = BeamChoice::kAll;
   bool refine_ = true;
   std::filesystem::path file_;

@@ -5,11 +5,7 @@
 
 #include <cmath>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
-
-#include "grabbers/simulate/device_effects.hpp"
-#include "grabbers/simulate/scenario_options.hpp"
 
 namespace crisp::study {
 namespace {
@@ -32,61 +28,24 @@ void DetectionStage::describe(StageDescription<DetectionStage>& d) {
   d.details(
       "For each effect of the catalogue, in its own formula: the size from which on diagnose.model would find it in such a recording (detectable), and the size from which on no other cause could stand in its place (resolvable), with the causes that could below that. Sizes are RMS changes of the ranges of the beams that the effect acts on, in the direction of its parameters that shows least. One recording is simulated. Fisher's information of all effects together with lambda, tau, alpha, eta and the planes of the surfaces that the diagnosis finds in it, and the thresholds of the stepwise selection, give the sizes.\n\n"
       "Compare motions, scenes and tilted rigs before recording. Noise counts as independent from beam to beam. Real surfaces are less flat and real errors are shared, so that real effects must be larger, on rough walls several times.");
-  simulate::describe_scene(d, &DetectionStage::scene_);
-  d.option("duration", &DetectionStage::scanner_, &simulate::ScannerSettings::duration,
-           "duration of the recording")
-      .unit("s")
-      .range(0.01, 100);
-  d.option("noise", &DetectionStage::scanner_, &simulate::ScannerSettings::range,
-           &simulate::RangeSettings::sigma, "standard deviation of a range")
-      .unit("m")
-      .range(1e-6, 10);
-  simulate::describe_motion(d, &DetectionStage::motion);
-  simulate::describe_truth(d, &DetectionStage::truth_);
-  simulate::describe_field(d, &DetectionStage::scanner_);
-  simulate::describe_kinds(d, &DetectionStage::kinds_);
+  describe_planned(d, &DetectionStage::planned_);
   d.option("file", &DetectionStage::file_, "output file of the sizes, CSV").writes();
 }
 
-void DetectionStage::check(const RunSettings& run) const {
-  check_all(
-      [&] {
-        Calibration truth = truth_.drawn(run, run.seed);
-        simulate::add_terms(truth,
-                            simulate::read_effects(truth_.effects, run.rig,
-                                                   simulate::recording_catalogue(simulate::known_terms(run))),
-                            simulate::known_terms(run));
-      },
-      [&] { simulate::make_motion(scanner_.motion, scanner_.duration, run.seed); },
-      [&] { scanner_.field.beams(); },
-      [&] {
-        simulate::ScannerSettings planned = scanner_;
-        planned.rig = run.rig;
-        kinds_.apply(planned);
-      });
-}
+void DetectionStage::check(const RunSettings& run) const { planned_.check(run); }
 
 void DetectionStage::process(const Inputs&, Outputs&, Context& context) {
-  const TermRegistry& terms = simulate::known_terms(context.run());
-  simulate::ScannerSettings scanner = scanner_;
-  scanner.rig = context.rig();
-  kinds_.apply(scanner);
-  scanner.seed = context.seed();
-  scanner.truth = truth_.load(context, scanner.seed);
-  simulate::add_terms(
-      scanner.truth,
-      simulate::read_effects(truth_.effects, context.rig(), simulate::recording_catalogue(terms)), terms);
-  const simulate::Scene scene = scene_.load(context);
+  const PlannedRecording::Prepared planned = planned_.prepared(context);
   context.progress(0, "detection");
-  detection_ = effect_detection(scanner, scene,
-                                simulate::make_motion(scanner.motion, scanner.duration, scanner.seed), terms);
-  context.report({{"scene", scene.name},
+  detection_ =
+      effect_detection(planned.scanner, planned.scene, planned.motion, simulate::known_terms(context.run()));
+  context.report({{"scene", planned.scene.name},
                   {"beams", detection_.beams},
                   {"surfaces", detection_.surfaces},
                   {"effects", effects_json(detection_)}});
   context.print(fmt::format("{:g} s in the {}: tested with {} beams on {} flat surfaces; noise {:g} mm",
-                            scanner_.duration, scene.name, detection_.beams, detection_.surfaces,
-                            scanner_.range.sigma * 1e3));
+                            planned.scanner.duration, planned.scene.name, detection_.beams,
+                            detection_.surfaces, planned.scanner.range.sigma * 1e3));
 }
 
 void DetectionStage::finish(Outputs&, Context& context) {

@@ -6,8 +6,8 @@
 #include <crisp/context.hpp>
 #include <crisp/stage_description.hpp>
 
-#include "grabbers/simulate/scenario.hpp"
 #include "plugins/study/effect_detection.hpp"
+#include "plugins/study/planned_recording.hpp"
 
 namespace crisp::study {
 
@@ -22,13 +22,7 @@ class DetectionStage final : public Stage {
   void finish(Outputs& out, Context& context) override;
 
  private:
-  // Target of the options.
-  simulate::MotionSettings& motion() { return scanner_.motion; }
-
-  simulate::ScannerSettings scanner_;
-  simulate::SceneChoice scene_;
-  simulate::TruthChoice truth_;
-  simulate::KindChoice kinds_;
+  PlannedRecording planned_;
   std::filesystem::path file_;
   EffectDetection detection_;
 };

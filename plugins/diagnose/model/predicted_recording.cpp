@@ -9,15 +9,12 @@
 
 #include "pipeline/data/degree.hpp"
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::diagnose {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-Eigen::Vector3d coordinates(const PointsView& points, std::size_t i) {
-  return {points.x[i], points.y[i], points.z[i]};
-}
 
 /// Which surfel is seen from the plate's centre, by direction.
 class DirectionMap {
@@ -67,10 +64,11 @@ std::vector<std::uint32_t> cast(const SensorModel& model, PredictedRecording& re
     const estimate::PlacedBeams placed(model, recording.sample());
     const quality::BeamsView view = placed.view();
     for (std::size_t i = 0; i < met.size(); ++i) {
-      const Eigen::Vector3d end = coordinates(view.points, i);
+      const Eigen::Vector3d end = quality::vector_at(view.points, i);
       const std::uint32_t before = std::exchange(met[i], map.at(end));
       if (met[i] == kNone) continue;
-      const double longer = to_plane(recording.surfels.surfels[met[i]], end, coordinates(view.directions, i));
+      const double longer =
+          to_plane(recording.surfels.surfels[met[i]], end, quality::vector_at(view.directions, i));
       const float range = recording.beams.range[i] + static_cast<float>(longer);
       const bool has_moved = iteration + 1 == kIterations && met[i] != before;
       if (range > kShortest && !has_moved)
@@ -111,7 +109,7 @@ PredictedRecording predicted_recording(const SensorModel& model, const estimate:
     const auto number = static_cast<std::uint32_t>(recording.surfels.surfels.size());
     recording.surfels.surfels.push_back(rotated(surfel, attitude.transpose()));
     for (const std::uint32_t beam : surfels.beams_of(surfel))
-      map.add(attitude.transpose() * coordinates(placed.points, beam), number);
+      map.add(attitude.transpose() * quality::vector_at(placed.points, beam), number);
   }
   keep(recording, cast(model, recording, map));
   return recording;

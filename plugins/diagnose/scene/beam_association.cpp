@@ -9,6 +9,7 @@
 
 #include "pipeline/estimate/shared_errors.hpp"
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp::diagnose {
@@ -18,10 +19,6 @@ constexpr double kSide = 0.1;   // [m] of a cell
 constexpr double kSteep = 0.5;  // minimum |cos β| on the surface ahead
 constexpr double kAlong = 0.1;  // minimum |cos β| on the end surface
 constexpr int kFew = 3;         // beams in a known cell
-
-Eigen::Vector3d vector_of(const PointsView& points, std::size_t i) {
-  return {points.x[i], points.y[i], points.z[i]};
-}
 
 /// A surface with its known cells, in coordinates of its plane.
 class KnownSurface {
@@ -35,7 +32,7 @@ class KnownSurface {
     std::vector<Eigen::Vector2d> feet;
     for (std::size_t k = 0; k < members_.size(); ++k) {
       if (weights_[k] == 0) continue;
-      feet.push_back(foot(vector_of(beams.points, members_[k])));
+      feet.push_back(foot(quality::vector_at(beams.points, members_[k])));
       least = least.cwiseMin(feet.back());
       most = most.cwiseMax(feet.back());
     }
@@ -149,9 +146,9 @@ BeamAssociation associate_beams(const quality::Surfels& surfels, const quality::
     values->assign(n, 0);
   quality::for_blocks(n, kAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d direction = vector_of(beams.directions, i);
+      const Eigen::Vector3d direction = quality::vector_at(beams.directions, i);
       const double range{ranges[i]};
-      const Eigen::Vector3d point = vector_of(beams.points, i);
+      const Eigen::Vector3d point = quality::vector_at(beams.points, i);
       follow({.origin = point - range * direction, .direction = direction, .end = point, .range = range},
              surfaces, i, association);
     }
