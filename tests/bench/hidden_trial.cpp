@@ -29,6 +29,7 @@ using namespace crisp::estimate;
 using test::causes;
 using test::Drawer;
 using test::Drawn;
+using test::stands_for;
 
 /// What became of one recording.
 struct Outcome {
@@ -43,12 +44,6 @@ struct Outcome {
   std::size_t gain_covered = 0;  ///< intervals of these in which the true gain in thickness lies
   std::size_t as_thin = 0;       ///< clouds within 3 % of the one where nothing hides
 };
-
-bool stands_for(const Hypothesis& hypothesis, const std::string& name) {
-  return std::ranges::any_of(hypothesis.competitors, [&](const auto& competitor) {
-    return competitor.name == name && competitor.behind < SelectionSettings{}.odds;
-  });
-}
 
 void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::string& name, Outcome& outcome) {
   ++outcome.hidden;
@@ -233,14 +228,6 @@ class Trial {
   std::map<std::string, Row> rows_;
 };
 
-/// Different effects, drawn from a seed.
-std::vector<std::string> some_of(std::vector<std::string> names, std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 random(seed + 1'000'000);
-  std::ranges::shuffle(names, random);
-  names.resize(count);
-  return names;
-}
-
 struct Wanted {
   std::string what = "one";
   std::uint64_t seeds = 10;
@@ -269,7 +256,7 @@ void run(const Wanted& requested) {
       }
     } else {
       const std::size_t count = requested.what == "three" ? 3 : requested.what == "two" ? 2 : 0;
-      trial.run(requested.what, Drawer(seed).with(some_of(causes(), count, seed), requested.size),
+      trial.run(requested.what, Drawer(seed).with(test::some_causes(count, seed), requested.size),
                 requested.size);
     }
   }

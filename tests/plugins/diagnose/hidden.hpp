@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -73,6 +74,13 @@ inline std::vector<std::string> names_in(const diagnose::Diagnosis& diagnosis) {
     if (hypothesis.accepted) names.push_back(hypothesis.candidate.name);
   }
   return names;
+}
+
+/// Whether a cause could be that of another name as well.
+inline bool stands_for(const diagnose::Hypothesis& hypothesis, const std::string& name) {
+  return std::ranges::any_of(hypothesis.competitors, [&](const auto& competitor) {
+    return competitor.name == name && competitor.behind < diagnose::SelectionSettings{}.odds;
+  });
 }
 
 /// Estimate of one parameter compared with its truth.

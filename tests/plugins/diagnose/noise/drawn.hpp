@@ -42,6 +42,15 @@ inline std::vector<std::string> causes() {
   return names;
 }
 
+/// Different causes, drawn from a seed.
+inline std::vector<std::string> some_causes(std::size_t count, std::uint64_t seed) {
+  std::vector<std::string> names = causes();
+  std::mt19937_64 random(seed + 1'000'000);
+  std::ranges::shuffle(names, random);
+  names.resize(count);
+  return names;
+}
+
 /// Draws recordings of ten seconds.
 class Drawer {
  public:
