@@ -103,11 +103,12 @@ simulate::SimulatedMeasurements as_proposed(const std::string& proposal, const t
   scanner.seed += 500'000;
   simulate::Scene scene = simulate::built_in_scene(drawn.scene);
   const double rate = mean_rate(drawn.recording.made.plate);
-  if (proposal.contains("tilted")) {
+  const auto is_of = [&](const char* words) { return proposal.find(words) != std::string::npos; };
+  if (is_of("tilted")) {
     scene = tilted(scene, 30 * data::kDegree);
-  } else if (proposal.contains("to and fro")) {
+  } else if (is_of("to and fro")) {
     scanner.motion = {.kind = simulate::MotionKind::reversal, .max_rate = 1.5 * rate};
-  } else if (proposal.contains("varying")) {
+  } else if (is_of("varying")) {
     scanner.motion = {.min_rate = 0.2 * rate, .max_rate = 1.8 * rate, .change_time = 2};
   } else {
     scanner.motion.min_rate *= 2;
