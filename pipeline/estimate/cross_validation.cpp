@@ -32,11 +32,13 @@ std::optional<CrossValidation> cross_validate(const SensorModel& model, const Sa
                                               const RoundReporter& go_on) {
   if (turned(sample) < 2 * 2 * std::numbers::pi) return std::nullopt;
   const Sample some = thin_evenly(sample, kInBothHalves, 1);
+  RefinementSettings of_half = settings;
+  of_half.compare_views = false;
   std::array<std::optional<Outcome>, 2> halves;
   for (const int parity : {0, 1}) {
     try {
       halves.at(static_cast<std::size_t>(parity)) =
-          refine_by_surfels(model, turns_of(some, parity), settings, go_on).outcome;
+          refine_by_surfels(model, turns_of(some, parity), of_half, go_on).outcome;
     } catch (const Error&) {
       return std::nullopt;  // nothing is flat in half of the beams, or nothing is determined
     }

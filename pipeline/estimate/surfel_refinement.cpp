@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -72,8 +73,14 @@ std::vector<std::size_t> fixed_parameters(const SensorModel& model, const Sample
   return all;
 }
 
-Refinement refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
-                       const RoundReporter& report) {
+/// A refinement from one start, and what it was found with.
+struct Attempt {
+  std::unique_ptr<SurfelRefiner> refiner;
+  Refinement refinement;
+};
+
+Attempt refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
+                    const RoundReporter& report) {
   const LagRange lag = refined_lags(start, settings.prior);
   Sample inside = covered(sample, lag.earliest, lag.latest);
   const auto caveat = caveat_of_half_a_turn(start, inside);
@@ -81,8 +88,9 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
       free_parameters(start, inside.beams, settings.fixed, settings.terms, settings.forms);
   const std::size_t all = of_base(possible.free, start);
   FreeParameters parameters = identifiable_parameters(std::move(possible), start, inside, ParameterPrior{});
-  SurfelRefiner refiner(with_nominal(start, parameters.unobservable, settings.prior), std::move(inside),
-                        parameters.free, settings);
+  auto owner = std::make_unique<SurfelRefiner>(with_nominal(start, parameters.unobservable, settings.prior),
+                                               std::move(inside), parameters.free, settings);
+  SurfelRefiner& refiner = *owner;
   int round = 0;
   bool converged = false;
   while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
@@ -115,7 +123,7 @@ Refinement refine_once(const SensorModel& start, const Sample& sample, const Ref
         "the refinement did not converge in {} rounds: its last step was {:.2g} standard errors. Check for objects that moved in the scene, or record for longer",
         round, refiner.last_step()));
   }
-  return result;
+  return {.refiner = std::move(owner), .refinement = std::move(result)};
 }
 
 /// The free parameters that a refinement moved by more than twice what its start was trusted to, in words.
@@ -167,18 +175,24 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   const auto was_stopped = [&](const Refinement& refinement) {
     return !refinement.converged && refinement.rounds < settings.max_rounds;
   };
-  Refinement result = refine_once(start, sample, settings, report);
+  Attempt last = refine_once(start, sample, settings, report);
+  const auto compared = [&] {
+    if (settings.compare_views) last.refiner->compare_views(last.refinement);
+    return std::move(last.refinement);
+  };
   SensorModel from = start;
   // The start counts as an observation: a start that was far off would draw the result towards itself.
   for (int restart = 0; restart < kRestarts; ++restart) {
+    const Refinement& result = last.refinement;
     const bool is_settled = result.converged && !is_drawn_to_start(from, result.outcome, settings.prior);
-    if (was_stopped(result) || is_settled) return result;
+    if (was_stopped(result) || is_settled) return compared();
     from = result.outcome.model;
-    Refinement next = refine_once(from, sample, settings, report);
-    if (was_stopped(next)) return result;
-    result = std::move(next);
-    result.restarts = restart + 1;
+    Attempt next = refine_once(from, sample, settings, report);
+    if (was_stopped(next.refinement)) return compared();
+    last = std::move(next);
+    last.refinement.restarts = restart + 1;
   }
+  Refinement result = compared();
   if (const auto moves = far_moves(from, result.outcome, settings.prior); !moves.empty()) {
     result.outcome.caveats.push_back(fmt::format(
         "the refinement did not converge: in the last of {} restarts {}. Check the rig's mount and nominal values, or start from a better calibration (calibrate.load)",

@@ -26,7 +26,8 @@ struct RefinementSettings {
   /// Rounds in which surfaces are searched for, at most. From a degree off, walls that lie apart come
   /// together one after the other.
   int searches = 12;
-  double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
+  double tolerance = 0.02;    ///< [standard errors] steps below which the refinement has converged
+  bool compare_views = true;  ///< whether `scatter`, `views` and their caveats are wanted besides the outcome
 };
 
 struct Refinement {

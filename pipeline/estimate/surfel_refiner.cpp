@@ -98,24 +98,25 @@ void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
 }
 
 Refinement SurfelRefiner::result() const {
-  Refinement result{.outcome = {.model = model_,
-                                .free = free_,
-                                .covariance = covariance_,
-                                .unobservable = {},
-                                .caveats = {}},
-                    .surfels = found_.surfels.size(),
-                    .beams = equations_.beams,
-                    .chi2 = equations_.chi2 / std::max(1.0, equations_.degrees_of_freedom)};
-  if (found_.surfels.empty()) return result;
+  return {.outcome =
+              {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}, .caveats = {}},
+          .surfels = found_.surfels.size(),
+          .beams = equations_.beams,
+          .chi2 = equations_.chi2 / std::max(1.0, equations_.degrees_of_freedom)};
+}
+
+void SurfelRefiner::compare_views(Refinement& result) const {
+  if (found_.surfels.empty()) return;
   const PlacedBeams placed(model_, sample_);
   result.scatter = neighbour_noise(found_, placed.view(noise_), sample_.beams, settings_.surfels);
+  std::vector<std::string> caveats;
   for (const ViewPartition& partition : view_partitions(sample_, lasers())) {
     const auto pairs = view_consistency(all_, placed.view(noise_), partition,
                                         {.range = settings_.surfels.noise, .angle = settings_.angle_error});
-    if (const auto caveat = inconsistency(partition, pairs)) result.outcome.caveats.push_back(*caveat);
+    if (const auto caveat = inconsistency(partition, pairs)) caveats.push_back(*caveat);
     result.views.insert(result.views.end(), pairs.begin(), pairs.end());
   }
-  return result;
+  result.outcome.caveats.insert(result.outcome.caveats.begin(), caveats.begin(), caveats.end());
 }
 
 /// Clamps each η to where encoder readings cover the beams.

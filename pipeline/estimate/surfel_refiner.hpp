@@ -56,6 +56,9 @@ class SurfelRefiner {
 
   Refinement result() const;
 
+  /// Adds the noise by neighbours and the agreement of the views of the surfaces, with their caveats.
+  void compare_views(Refinement& result) const;
+
  private:
   Eigen::VectorXd posterior_step(const PlacedBeams& placed);
   void update_damping(const Eigen::VectorXd& step);

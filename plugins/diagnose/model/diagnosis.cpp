@@ -101,6 +101,7 @@ class Diagnoser {
     estimate::RefinementSettings settings = settings_.refinement;
     settings.terms = model::terms_in(calibration, terms_);
     settings.forms = true;
+    settings.compare_views = &sample == &sample_;  // held-out fits are scored by their thickness
     settings.searches = kSearches;
     settings.prior.earliest_eta = lags_.earliest;
     settings.prior.latest_eta = lags_.latest;
