@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include <crisp/term.hpp>
 
@@ -53,7 +54,7 @@ class EmpiricalTerm final : public ModelTerm {
       case Over::kMirrorAngle:
         return change_by(beam.measured_mirror, beam, p);
       case Over::kPlateAngle:
-        return change_by(T(beam.encoder_angle), beam, p);
+        return change_over(T(beam.encoder_angle), beam, p);
       case Over::kRange:
         return change_by(beam.measured_range, beam, p);
       case Over::kIncidence:
@@ -61,12 +62,21 @@ class EmpiricalTerm final : public ModelTerm {
       case Over::kRemission:
         return change_by(std::log(std::max(1.0, beam.remission)), beam, p);
       case Over::kTime:
-        return change_by(beam.hub_time / p.back(), beam, p);
+        return change_over(beam.hub_time / p.back(), beam, p);
       case Over::kPlateRate:
-        return change_by(T(beam.plate_rate), beam, p);
+        return change_over(T(beam.plate_rate), beam, p);
       case Over::kRangePhase:
-        return change_by((2 * std::numbers::pi * beam.measured_range) / p.back(), beam, p);
+        return change_over((2 * std::numbers::pi * beam.measured_range) / p.back(), beam, p);
     }
+  }
+
+  /// By numbers where nothing moves x, which takes a fraction of the time.
+  template <class X, class T, class P>
+  void change_over(const X& x, Beam<T>& beam, std::span<const P> p) const {
+    if constexpr (std::is_same_v<X, Jet>) {
+      if (x.v.isZero(0)) return change_by(x.a, beam, p);
+    }
+    change_by(x, beam, p);
   }
 
   template <class X, class T, class P>

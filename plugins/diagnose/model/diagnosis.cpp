@@ -94,8 +94,8 @@ class Diagnoser {
       result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
   }
 
-  /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
-  static constexpr int kSearches = 4;
+  /// The start is close. Where the model lacks a large effect, searches never agree with one another.
+  static constexpr int kSearches = 1;
 
   estimate::Refinement refined(const Calibration& calibration, const estimate::Sample& sample) const {
     estimate::RefinementSettings settings = settings_.refinement;
