@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whether the further recording that a diagnosis proposes resolves two causes at once: diagnoses recordings
 // of hidden_trial's `two`, simulates the proposed one in the same place where a cause is open, and diagnoses
-// both together. Prints a line for each draw, and counts in the end.
+// both together (the second alone where the first has an effect of time, which recordings do not share).
+// Prints a line for each draw, and counts in the end.
 //
 //     second_recording_trial FIRST DRAWS [MILLIMETRES]      RMS by which each cause changes ranges (8)
 #include <fmt/format.h>
@@ -117,10 +118,21 @@ simulate::SimulatedMeasurements as_proposed(const std::string& proposal, const t
   return simulate::simulate_measurements(scanner, scene, built_in_terms());
 }
 
-Diagnosis diagnosed_with(const test::Drawn& drawn, const simulate::SimulatedMeasurements& second) {
-  const test::Several both = test::several({drawn.recording.made, second});
+/// Whether a cause depends on the time since the recording began, so that recordings do not share it.
+bool is_of_time(const Candidate& candidate) {
+  return built_in_terms().get(candidate.term.term)->info().counts_from == CountsFrom::kRunsEpoch;
+}
+
+bool has_cause_of_time(const Diagnosis& diagnosis) {
+  return std::ranges::any_of(diagnosis.hypotheses,
+                             [](const Hypothesis& one) { return one.accepted && is_of_time(one.candidate); });
+}
+
+Diagnosis diagnosed(const test::Drawn& drawn,
+                    const std::vector<simulate::SimulatedMeasurements>& recordings) {
+  const test::Several all = test::several(recordings);
   return diagnose::diagnose(SensorModel(nominal_calibration(drawn.recording.scanner.rig), built_in_terms()),
-                            both.sample(), built_in_terms(), {});
+                            all.sample(), built_in_terms(), {});
 }
 
 class Trial {
@@ -139,13 +151,18 @@ class Trial {
     const auto is_open = [](const auto& each) { return each.second != "alone"; };
     if (std::ranges::any_of(verdicts, is_open) && best) {
       const std::string& proposal = first.proposals[*best].recording;
-      const Diagnosis both = diagnosed_with(drawn, as_proposed(proposal, drawn));
+      const auto second = as_proposed(proposal, drawn);
+      const bool is_by_itself = has_cause_of_time(first);
+      const Diagnosis then =
+          diagnosed(drawn, is_by_itself ? std::vector{second} : std::vector{drawn.recording.made, second});
       for (auto& [name, verdict] : verdicts) {
-        if (!std::ranges::any_of(both.unshared, [&](const auto& one) { return name.ends_with(one); }))
-          verdict = verdict_on(name, both);
+        const bool is_untested =
+            std::ranges::any_of(then.unshared, [&](const auto& one) { return name.ends_with(one); });
+        const bool is_known = is_by_itself && verdict == "alone";
+        if (!is_untested && !is_known) verdict = verdict_on(name, then);
       }
       fmt::print("; with {}: {}", proposal, fmt::join(verdicts, ", "));
-      count("second", verdicts, wrong_names(both, drawn.names));
+      count("second", verdicts, wrong_names(then, drawn.names));
     } else {
       count("second", verdicts, wrong_names(first, drawn.names));
     }
