@@ -48,10 +48,6 @@ if(CRISP_SANITIZE)
   if(CRISP_SANITIZE MATCHES "address.*undefined")
     # A tenth to a fifth of the time to compile, for what the address sanitizer sees itself.
     add_compile_options(-fno-sanitize=null,object-size)
-    # Tests are not instrumented, which takes two fifths of the time to compile them: what they test is. Libraries keep
-    # their own copies of inline functions, which are.
-    target_compile_options(crisp_test_settings INTERFACE -fno-sanitize=all)
-    add_link_options(-Wl,-Bsymbolic-functions)
   endif()
   if(CRISP_SANITIZE STREQUAL "thread")
     # The thread sanitizer does not know fences; Asio's accompany its mutexes, which it knows.
@@ -161,11 +157,10 @@ function(crisp_fuzz name)
     message(FATAL_ERROR "the fuzz target ${name} has no seeds: put some small inputs into ${seeds}")
   endif()
   add_executable(${name}_fuzz ${arg_SOURCES})
-  target_link_libraries(${name}_fuzz PRIVATE ${arg_LIBRARIES})
+  target_link_libraries(${name}_fuzz PRIVATE ${arg_LIBRARIES} crisp_test_settings)
   set_target_properties(${name}_fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   add_dependencies(all_tests ${name}_fuzz)
   if(CRISP_BUILD_FUZZERS)
-    target_link_libraries(${name}_fuzz PRIVATE crisp_settings)  # instrumented, unlike tests
     target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
     foreach(library ${name}_fuzz ${arg_LIBRARIES})  # what reports its coverage
       get_target_property(aliased ${library} ALIASED_TARGET)
@@ -185,7 +180,7 @@ function(crisp_fuzz name)
     math(EXPR limit "${seconds} + 300")
     set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${limit})
   else()
-    target_link_libraries(${name}_fuzz PRIVATE crisp_replay crisp_test_settings)
+    target_link_libraries(${name}_fuzz PRIVATE crisp_replay)
     crisp_precompile(${name}_fuzz test)
     add_test(NAME seeds.${name} COMMAND ${name}_fuzz ${seeds})
     set_tests_properties(seeds.${name} PROPERTIES TIMEOUT 120)
