@@ -108,21 +108,21 @@ bool Competition::is_general_member(std::size_t candidate) const {
   const Candidate& one = jacobian_.candidates()[candidate];
   return one.is_cause() && one.is_shape() && !one.is_fine;
 }
-/// A curve of which the data bound the size to less than half of the level is none.
+
 bool Competition::could_be_level(const SelectedCandidate& choice, std::size_t cause,
                                  const std::vector<std::size_t>& taken) const {
-  constexpr double kPart = 0.5;
-  constexpr double kErrors = 2;
   const auto& candidates = jacobian_.candidates();
   if (!candidates[choice.candidate].is_level_of(candidates[cause])) return false;
   const ScoreTest curve = joint_score_test_given(taken, {cause}, jacobian_, equations_);
-  return curve.ranges + kErrors * curve.ranges_error > kPart * choice.test.ranges;
+  return curve.ranges + kCurveErrors * curve.ranges_error > kPartOfLevel * choice.test.ranges;
 }
+
 bool Competition::could_replace(std::size_t candidate, std::size_t one) const {
   const Candidate& other = jacobian_.candidates()[candidate];
   const Candidate& selected = jacobian_.candidates()[one];
   return other.laser() == selected.laser() && !other.is_of_family(selected);
 }
+
 bool Competition::is_taken(std::size_t candidate, const std::vector<std::size_t>& taken) const {
   const auto& candidates = jacobian_.candidates();
   return std::ranges::any_of(

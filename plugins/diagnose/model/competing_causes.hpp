@@ -30,6 +30,11 @@ std::vector<std::size_t> without(std::vector<std::size_t> taken, std::size_t one
 /// Which causes the data do not resolve from a selected one.
 class Competition {
  public:
+  /// A curve is none if the data bound its size, by so many standard errors, to less than this part of its
+  /// level.
+  static constexpr double kPartOfLevel = 0.5;
+  static constexpr double kCurveErrors = 2;
+
   /// @param equations  normal equations in the Jacobian's columns; both outlive this
   Competition(const CandidateJacobian& jacobian, const quality::NormalEquations& equations)
       : jacobian_(jacobian), equations_(equations) {}

@@ -94,8 +94,8 @@ class Diagnoser {
       result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
   }
 
-  /// The start is close. Where the model lacks a large effect, searches never agree with one another.
-  static constexpr int kSearches = 1;
+  /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
+  static constexpr int kSearches = 4;
 
   estimate::Refinement refined(const Calibration& calibration, const estimate::Sample& sample) const {
     estimate::RefinementSettings settings = settings_.refinement;
@@ -158,7 +158,9 @@ class Diagnoser {
         if (may_be_fine) return search;
         CandidateSearch finer(observations, result.after, terms_, settings_, left);
         result.hypotheses = finer.needs(state.rejected);
-        return finer;
+        // A deviation that no shape describes with these beams may be that of a small cause.
+        state.is_close = result.hypotheses.empty() && settings_.refine_beams > settings_.beams;
+        if (!state.is_close) return finer;
       }
     }
     state.report(0.4, "refining the search with more beams");

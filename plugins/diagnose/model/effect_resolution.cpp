@@ -88,16 +88,14 @@ class Resolver {
     return others;
   }
 
-  /// [m] Size of a level from which on the data bound its cause's curve to less than half of it: see
-  /// Competition.
+  /// [m] Size of a level from which on its cause's curve is none: see Competition.
   double level_size(std::size_t curve) const {
-    constexpr double kErrors = 2;
-    constexpr double kPart = 0.5;
     const quality::NormalEquations left = equations_given({}, {curve}, jacobian_, equations_);
     const Eigen::MatrixXd directions = shown_directions(left);
     if (directions.cols() < left.matrix.cols()) return kInfinity;
     const Eigen::MatrixXd errors = statistics::inverse(directions.transpose() * left.matrix * directions);
-    return kErrors / kPart * std::sqrt(errors.trace() * equations_.covariance_factor());
+    return Competition::kCurveErrors / Competition::kPartOfLevel *
+           std::sqrt(errors.trace() * equations_.covariance_factor());
   }
 
   static void add_confounded(EffectResolution& result, const std::map<std::string, double>& sizes) {

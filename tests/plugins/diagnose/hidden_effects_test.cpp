@@ -182,6 +182,21 @@ TEST(HiddenEffects, ASmallEffectIsDetectedWithMoreBeams) {
   EXPECT_TRUE(diagnosis.settled);
 }
 
+TEST(HiddenEffects, ADeviationThatNoShapeDescribesMayBeASmallCauses) {
+  const std::string name = "laser1.range.incidence";
+  const auto recording = test::hidden(3, 10, office(), {{name, {0.006}}});
+  DiagnosisSettings never_refined;
+  never_refined.refine_beams = 0;
+  const Diagnosis rough = test::diagnosed(recording, never_refined);
+  EXPECT_THAT(rough.hypotheses, IsEmpty());
+  EXPECT_LT(rough.left_after.p_value, SelectionSettings{}.p_value);
+  const Diagnosis diagnosis = test::diagnosed(recording);
+  ASSERT_THAT(diagnosis.hypotheses, SizeIs(1));
+  const Hypothesis& found = diagnosis.hypotheses[0];
+  EXPECT_TRUE(found.candidate.cause_name() == name || test::stands_for(found, name)) << found.candidate.name;
+  EXPECT_GT(diagnosis.left_after.p_value, SelectionSettings{}.p_value);
+}
+
 TEST(HiddenEffects, SearchEndsOnInterruption) {
   const auto recording = test::hidden(24, 2, office(), {});
   for (const int most : {0, 3, 30}) {  // at the start; in the first refinement; in the candidate tests
