@@ -182,7 +182,7 @@ TEST(HiddenEffects, ASmallEffectIsDetectedWithMoreBeams) {
   EXPECT_TRUE(diagnosis.settled);
 }
 
-TEST(HiddenEffects, ADeviationThatNoShapeDescribesMayBeASmallCauses) {
+TEST(HiddenEffects, ASmallCauseIsNamedWhereNoShapeDescribesIt) {
   const std::string name = "laser1.range.incidence";
   const auto recording = test::hidden(3, 10, office(), {{name, {0.006}}});
   DiagnosisSettings never_refined;
