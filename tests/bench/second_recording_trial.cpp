@@ -155,11 +155,11 @@ class Trial {
       const bool is_by_itself = has_cause_of_time(first);
       const Diagnosis then =
           diagnosed(drawn, is_by_itself ? std::vector{second} : std::vector{drawn.recording.made, second});
-      for (auto& [name, verdict] : verdicts) {
-        const bool is_untested =
-            std::ranges::any_of(then.unshared, [&](const auto& one) { return name.ends_with(one); });
-        const bool is_known = is_by_itself && verdict == "alone";
-        if (!is_untested && !is_known) verdict = verdict_on(name, then);
+      for (auto& each : verdicts) {
+        const bool is_untested = std::ranges::any_of(
+            then.unshared, [&](const std::string& one) { return each.first.ends_with(one); });
+        const bool is_known = is_by_itself && each.second == "alone";
+        if (!is_untested && !is_known) each.second = verdict_on(each.first, then);
       }
       fmt::print("; with {}: {}", proposal, fmt::join(verdicts, ", "));
       count("second", verdicts, wrong_names(then, drawn.names));
