@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/quality/blocks.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::estimate {
 
@@ -12,7 +13,7 @@ std::vector<float> incidences(const quality::Surfels& surfels, const quality::Be
   quality::for_each_index(surfels.surfels.size(), [&](std::size_t s) {
     const quality::Surfel& surfel = surfels.surfels[s];
     for (const std::uint32_t i : surfels.beams_of(surfel)) {
-      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      const Eigen::Vector3d direction = quality::vector_at(beams.directions, i);
       cosines[i] = static_cast<float>(std::abs(surfel.normal.dot(direction)));
     }
   });

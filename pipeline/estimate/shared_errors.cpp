@@ -32,7 +32,7 @@ static_assert(kPlaces * kPlaces == kPlacesOfEach);
 /// sorted by their noise.
 Eigen::Vector2d foot_on(const quality::Surfel& surfel, const quality::BeamsView& beams, std::uint32_t i) {
   const Eigen::Vector3d point = quality::vector_at(beams.points, i);
-  const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+  const Eigen::Vector3d direction = quality::vector_at(beams.directions, i);
   const double incidence = surfel.normal.dot(direction);
   const Eigen::Vector3d from_middle = point - surfel.middle;
   const double further = incidence < 0 ? -surfel.normal.dot(from_middle) / incidence : 0;

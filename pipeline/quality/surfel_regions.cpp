@@ -8,6 +8,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/sort_unique.hpp"
 #include "pipeline/quality/surfel_patches.hpp"
+#include "pipeline/quality/vector_at.hpp"
 #include "pipeline/quality/view_flatness.hpp"
 #include "pipeline/quality/view_planes.hpp"
 
@@ -67,7 +68,7 @@ std::vector<ViewPlanes> view_planes(const std::vector<FlatPatch>& patches, const
     const FlatPatch& patch = patches[p];
     for (std::uint32_t k = cells.begin[patch.first_cell]; k < cells.begin[patch.last_cell]; ++k) {
       const std::uint32_t i = cells.order.index[k];
-      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      const Eigen::Vector3d direction = vector_at(beams.directions, i);
       const double across = settings.noise * patch.plane.normal.dot(direction);
       result[p].add(views.of_beam[i], cells.point(beams, i),
                     1 / (across * across + settings.floor * settings.floor));
@@ -185,7 +186,7 @@ std::vector<std::uint32_t> region_of_beams(const BeamsView& beams, const SurfelC
     if (near.empty()) return;
     for (std::uint32_t k = cells.begin[c]; k < cells.begin[c + 1]; ++k) {
       const std::uint32_t i = cells.order.index[k];
-      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      const Eigen::Vector3d direction = vector_at(beams.directions, i);
       result[i] = sorter.region_of(cells.point(beams, i), direction, c, near);
     }
   });

@@ -60,7 +60,7 @@ std::vector<SurfelResidual> from_own_plane(const Surfel& surfel, std::span<const
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = members[k];
       const Eigen::Vector3d point = vector_at(beams.points, i);
-      const Eigen::Vector3d direction(beams.directions.x[i], beams.directions.y[i], beams.directions.z[i]);
+      const Eigen::Vector3d direction = vector_at(beams.directions, i);
       residuals[k] = against(surfel, point, direction, settings.noise * beams.noise_of(i), settings.floor);
     }
   });

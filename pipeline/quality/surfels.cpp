@@ -13,6 +13,7 @@
 #include "pipeline/quality/blocks.hpp"
 #include "pipeline/quality/surfel_patches.hpp"
 #include "pipeline/quality/surfel_residuals.hpp"
+#include "pipeline/quality/vector_at.hpp"
 
 namespace crisp::quality {
 namespace {
@@ -31,10 +32,6 @@ void check(const BeamsView& beams, const SurfelSettings& settings) {
     throw Error("the settings of surfels are out of range",
                 "0 < smallest <= largest, noise, floor and max_thickness > 0, min_points >= 4");
   }
-}
-
-Eigen::Vector3d direction_of(const BeamsView& beams, std::uint32_t beam) {
-  return {beams.directions.x[beam], beams.directions.y[beam], beams.directions.z[beam]};
 }
 
 /// The beams of each region, one region after the other.
@@ -62,7 +59,7 @@ void set_plane(Surfel& surfel, std::span<const std::uint32_t> members, const Bea
   Eigen::Vector3d towards = Eigen::Vector3d::Zero();
   for (const std::uint32_t beam : members) {
     moments.add(cells.point(beams, beam));
-    towards -= direction_of(beams, beam);
+    towards -= vector_at(beams.directions, beam);
   }
   const Plane plane = plane_of(moments);
   surfel.middle = plane.middle + cells.origin;
@@ -90,7 +87,7 @@ double incidence_of(const Surfel& surfel, const Surfels& surfels, const BeamsVie
   double sum = 0;
   double weights = 0;
   for (std::uint32_t k = surfel.begin; k < surfel.end; ++k) {
-    sum += surfels.weights[k] * std::abs(surfel.normal.dot(direction_of(beams, surfels.members[k])));
+    sum += surfels.weights[k] * std::abs(surfel.normal.dot(vector_at(beams.directions, surfels.members[k])));
     weights += surfels.weights[k];
   }
   return weights > 0 ? sum / weights : 0;

@@ -48,7 +48,7 @@ class Diagnoser {
 
   Diagnosis run() {
     report(0, "refining without any terms");
-    const estimate::Refinement plain = refined(with_terms(start_, {}), sample_);
+    const estimate::Refinement plain = refined(with_terms(start_, {}));
     limit_lags(plain.outcome.model);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
@@ -81,13 +81,15 @@ class Diagnoser {
                                    settings_.refinement.surfels);
     PerModel<CrossValidator::Score> scores;
     const HeldOutScore held_out = [&](const Calibration& start) {
-      return scores.of(SensorModel(start, terms_),
-                       [&] { return validator.score(refined(start, validator.fitted()).outcome.model); });
+      return scores.of(SensorModel(start, terms_), [&] {
+        const auto fit = refined_with(validator.fitted(), start, false);
+        return validator.score(fit.outcome.model);
+      });
     };
     const CrossValidator::Score plain = held_out(result.before.outcome.model.calibration());
     accept_or_reject(result, plain,
                      {.held_out = held_out,
-                      .refit = [this](const Calibration& start) { return refined(start, sample_); },
+                      .refit = [this](const Calibration& start) { return refined(start); },
                       .compare = [this](const estimate::Refinement& fit) { return left_by(fit); }},
                      terms_, settings_, 0.5 * (sample_.plate->begin() + sample_.plate->end()));
     if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
@@ -97,11 +99,17 @@ class Diagnoser {
   /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
   static constexpr int kSearches = 4;
 
-  estimate::Refinement refined(const Calibration& calibration, const estimate::Sample& sample) const {
+  /// A refinement with all beams.
+  estimate::Refinement refined(const Calibration& calibration) const {
+    return refined_with(sample_, calibration, true);
+  }
+
+  estimate::Refinement refined_with(const estimate::Sample& sample, const Calibration& calibration,
+                                    bool compare_views) const {
     estimate::RefinementSettings settings = settings_.refinement;
     settings.terms = model::terms_in(calibration, terms_);
     settings.forms = true;
-    settings.compare_views = &sample == &sample_;  // held-out fits are scored by their thickness
+    settings.compare_views = compare_views;
     settings.searches = kSearches;
     settings.prior.earliest_eta = lags_.earliest;
     settings.prior.latest_eta = lags_.latest;
@@ -200,7 +208,7 @@ class Diagnoser {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
       try {
-        result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen), sample_);
+        result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen));
       } catch (const estimate::UncoveredBeams&) {
         if (!reject_new_time_terms(state, before)) throw;
       }
