@@ -10,15 +10,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "pipeline/files/findings_file.hpp"
+#include "tests/bench/trial.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
@@ -54,15 +51,15 @@ Predicted predicted(const test::PipelineFixture& fixture, const test::DrawnRig& 
 
 class DetectionTrial {
  public:
-  explicit DetectionTrial(std::string form, std::vector<std::string> fixed)
-      : form_(std::move(form)), fixed_(std::move(fixed)) {}
+  explicit DetectionTrial(std::vector<std::string> rest)
+      : form_(rest.front()), fixed_(rest.begin() + 1, rest.end()) {}
 
   void run(std::uint64_t seed) {
     const test::PipelineFixture fixture;
     const Predicted sizes = predicted(fixture, drawn(fixture, seed, 0.01));
     if (!sizes.detectable) {
       fmt::print("{} predicted: never detectable\n", seed);
-      ++counts_["predicted never"];
+      verdicts_.count("predicted never", "drawn");
       return;
     }
     judge(fixture, seed, 0.5 * *sizes.detectable, "half of detectable");
@@ -70,9 +67,7 @@ class DetectionTrial {
           sizes.resolvable ? "twice resolvable" : "twice detectable");
   }
 
-  void print() const {
-    for (const auto& [what, count] : counts_) fmt::print("{:4} {}\n", count, what);
-  }
+  void print() const { verdicts_.print(); }
 
  private:
   test::DrawnRig drawn(const test::PipelineFixture& fixture, std::uint64_t seed, double size) const {
@@ -101,35 +96,20 @@ class DetectionTrial {
           verdict = is_class ? "class" : "other name";
       }
     }
-    ++counts_[what + ": " + verdict];
+    verdicts_.count(what, verdict);
     fmt::print("{} {} {:.3g} mm, {}: {} ({}); {}\n", seed, form_, 1e3 * size, what, verdict,
                fmt::join(all, " "), rig.words());
-    std::fflush(stdout);
   }
 
   std::string form_;
   std::vector<std::string> fixed_;
-  std::map<std::string, int> counts_;
+  test::VerdictTable verdicts_;  // by size
 };
 
 }  // namespace
 }  // namespace crisp
 
 int main(int argc, char** argv) {
-  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  if (arguments.size() < 4) {
-    fmt::print(stderr, "usage: detection_trial FIRST DRAWS FORM [NAME=VALUE...]\n");
-    return 2;
-  }
-  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
-  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
-  try {
-    crisp::DetectionTrial trial(arguments[3], {arguments.begin() + 4, arguments.end()});
-    for (std::uint64_t seed = first; seed < first + draws; ++seed) trial.run(seed);
-    trial.print();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return crisp::test::run_trial<crisp::DetectionTrial>(argc, argv,
+                                                       "detection_trial FIRST DRAWS FORM [NAME=VALUE...]", 1);
 }

@@ -9,14 +9,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/files/findings_file.hpp"
+#include "tests/bench/trial.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
@@ -30,10 +28,12 @@ using Names = std::vector<std::string>;
 
 class FormTrial {
  public:
-  void run(std::uint64_t seed, const Names& fixed) {
+  explicit FormTrial(Names fixed) : fixed_(std::move(fixed)) {}
+
+  void run(std::uint64_t seed) {
     const test::PipelineFixture fixture;
     Names draws = {"fault=none", "has_mixed_pixels=0", "duration=10", "has_effect=1"};
-    draws.insert(draws.end(), fixed.begin(), fixed.end());
+    draws.insert(draws.end(), fixed_.begin(), fixed_.end());
     const test::DrawnRig drawn(fixture / "drawn", seed, draws);
     const auto begin = std::chrono::steady_clock::now();
     const auto outcome = fixture.run("diagnose.yaml", drawn.capture(), "out", {}, drawn.rig());
@@ -46,21 +46,13 @@ class FormTrial {
     else
       judge(effect, read_findings(fixture / "out/diagnosis.json"));
     fmt::print("{}\n", outcome.status == ExitStatus::done ? "" : "; untrusted");
-    std::fflush(stdout);
   }
 
-  void print() const {
-    for (const auto& [cause, verdicts] : verdicts_) {
-      fmt::print("{}:", cause);
-      for (const auto& [verdict, captures] : verdicts) fmt::print("  {} {}", captures, verdict);
-      fmt::print("\n");
-    }
-  }
+  void print() const { verdicts_.print(); }
 
  private:
   void count(const std::string& cause, const std::string& verdict) {
-    ++verdicts_[cause][verdict];
-    ++verdicts_["all"][verdict];
+    for (const std::string& kind : {cause, std::string("all")}) verdicts_.count(kind, verdict);
     fmt::print("; {}", verdict);
   }
 
@@ -94,28 +86,13 @@ class FormTrial {
     fmt::print(": {}", fmt::join(all, ", "));
   }
 
-  std::map<std::string, std::map<std::string, int>> verdicts_;  // by cause
+  Names fixed_;
+  test::VerdictTable verdicts_;  // by cause
 };
 
 }  // namespace
 }  // namespace crisp
 
 int main(int argc, char** argv) {
-  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  if (arguments.size() < 3) {
-    fmt::print(stderr, "usage: form_trial FIRST DRAWS [NAME=VALUE...]\n");
-    return 2;
-  }
-  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
-  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
-  const std::vector<std::string> fixed(arguments.begin() + 3, arguments.end());
-  try {
-    crisp::FormTrial trial;
-    for (std::uint64_t seed = first; seed < first + draws; ++seed) trial.run(seed, fixed);
-    trial.print();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return crisp::test::run_trial<crisp::FormTrial>(argc, argv, "form_trial FIRST DRAWS [NAME=VALUE...]");
 }

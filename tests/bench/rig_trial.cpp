@@ -11,10 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +19,7 @@
 #include <crisp/calibration_file.hpp>
 
 #include "pipeline/data/degree.hpp"
+#include "tests/bench/trial.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
@@ -73,9 +71,11 @@ Expected expect(const test::PipelineFixture& fixture, const test::DrawnRig& draw
 
 class RigTrial {
  public:
-  void run(std::uint64_t seed, const std::vector<std::string>& fixed) {
+  explicit RigTrial(std::vector<std::string> fixed) : fixed_(std::move(fixed)) {}
+
+  void run(std::uint64_t seed) {
     const test::PipelineFixture fixture;
-    const test::DrawnRig drawn(fixture / "drawn", seed, fixed);
+    const test::DrawnRig drawn(fixture / "drawn", seed, fixed_);
     const Expected expected = drawn.fault() == "none" ? expect(fixture, drawn) : Expected{};
     const auto begin = std::chrono::steady_clock::now();
     const auto outcome = fixture.run("calibrate.yaml", drawn.capture(), "out", {}, drawn.rig());
@@ -98,31 +98,23 @@ class RigTrial {
       }
       verdict = (wrong.empty() ? "right, " : "wrong, ") + verdict;
     }
-    ++verdicts_[drawn.fault()][verdict];
+    verdicts_.count(drawn.fault(), verdict);
     fmt::print("{:<5} {:<9} {:<17} {:.0f} s; {}; {}\n", seed, drawn.fault(), verdict, took.count(),
                drawn.words(), fmt::join(wrong, ", "));
     if (drawn.fault() == "none") {
       const bool is_determined = verdict != "refused" && held.empty();
       ++predicted_[{expected.problem.empty() && expected.unknown.empty(), is_determined}];
-      if (expected.is_good()) ++where_bound_is_good_[verdict];
+      if (expected.is_good()) verdicts_.count("bound below 2 mm and 0.3 deg", verdict);
       fmt::print("      {}", expected.text());
       if (!held.empty()) fmt::print("; held: {}", fmt::join(held, ", "));
       fmt::print("\n");
     }
     if (outcome.status != ExitStatus::done) print_reasons(outcome.console);
-    std::fflush(stdout);
   }
 
   void print() const {
     fmt::print("\n");
-    for (const auto& [fault, verdicts] : verdicts_) {
-      fmt::print("{}:", fault);
-      for (const auto& [verdict, draws] : verdicts) fmt::print("  {} {}", draws, verdict);
-      fmt::print("\n");
-    }
-    fmt::print("bound below 2 mm and 0.3 deg:");
-    for (const auto& [verdict, draws] : where_bound_is_good_) fmt::print("  {} {}", draws, verdict);
-    fmt::print("\n");
+    verdicts_.print();
     for (const auto& [determined, draws] : predicted_) {
       fmt::print("  {} {} by the bound, {} by the calibration\n", draws,
                  determined.first ? "determined" : "not determined",
@@ -152,31 +144,15 @@ class RigTrial {
     }
   }
 
-  std::map<std::string, std::map<std::string, int>> verdicts_;  // by fault
-  std::map<std::string, int> where_bound_is_good_;              // by verdict; right rigs
-  std::map<std::pair<bool, bool>, int> predicted_;              // determined by the bound, by the calibration
-  std::map<std::string, std::vector<double>> scores_;           // errors in standard errors, by kind
+  std::vector<std::string> fixed_;
+  test::VerdictTable verdicts_;                        // by fault, and of right rigs those with a good bound
+  std::map<std::pair<bool, bool>, int> predicted_;     // determined by the bound, by the calibration
+  std::map<std::string, std::vector<double>> scores_;  // errors in standard errors, by kind
 };
 
 }  // namespace
 }  // namespace crisp
 
 int main(int argc, char** argv) {
-  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  if (arguments.size() < 3) {
-    fmt::print(stderr, "usage: rig_trial FIRST DRAWS [NAME=VALUE...]\n");
-    return 2;
-  }
-  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
-  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
-  const std::vector<std::string> fixed(arguments.begin() + 3, arguments.end());
-  try {
-    crisp::RigTrial trial;
-    for (std::uint64_t seed = first; seed < first + draws; ++seed) trial.run(seed, fixed);
-    trial.print();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return crisp::test::run_trial<crisp::RigTrial>(argc, argv, "rig_trial FIRST DRAWS [NAME=VALUE...]");
 }

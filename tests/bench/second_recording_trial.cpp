@@ -12,14 +12,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <numbers>
-#include <random>
-#include <span>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "pipeline/data/degree.hpp"
+#include "tests/bench/trial.hpp"
 #include "tests/plugins/diagnose/noise/drawn.hpp"
 #include "tests/support/several_recordings.hpp"
 
@@ -48,8 +49,6 @@ std::string verdict_on(const std::string& name, const Diagnosis& diagnosis) {
   if (limit == diagnosis.unobservable.end()) return verdict;
   return std::isfinite(limit->size) ? "too small" : "absorbed";
 }
-
-bool is_named(const std::string& verdict) { return verdict == "alone" || verdict == "heads its class"; }
 
 /// The accepted causes that stand for nothing that hides.
 std::vector<std::string> wrong_names(const Diagnosis& diagnosis, const std::vector<std::string>& hidden) {
@@ -135,86 +134,77 @@ Diagnosis diagnosed(const test::Drawn& drawn,
                             all.sample(), built_in_terms(), {});
 }
 
+using Verdicts = std::map<std::string, std::string>;  // by hidden cause
+
+bool are_all(const Verdicts& verdicts, const std::set<std::string>& what) {
+  return std::ranges::all_of(verdicts, [&](const auto& each) { return what.contains(each.second); });
+}
+
+/// Updates the verdicts by the diagnosis of the recording that was proposed. `with_first`: together with the
+/// first.
+void update(Verdicts& verdicts, const Diagnosis& then, bool with_first) {
+  for (auto& [name, verdict] : verdicts) {
+    const bool is_untested = std::ranges::any_of(
+        then.unshared, [&name = name](const std::string& unshared) { return name.ends_with(unshared); });
+    const bool is_known = !with_first && verdict == "alone";
+    if (!is_untested && !is_known) verdict = verdict_on(name, then);
+  }
+}
+
 class Trial {
  public:
-  void run(std::uint64_t seed, double size) {
-    const test::Drawn drawn = test::Drawer(seed).with(test::some_causes(2, seed), size);
-    if (!drawn.reaches(size)) return;
+  explicit Trial(const std::vector<std::string>& rest) {
+    if (!rest.empty()) size_ = std::strtod(rest.front().c_str(), nullptr) / 1e3;
+  }
+
+  void run(std::uint64_t seed) {
+    const test::Drawn drawn = test::Drawer(seed).with(test::some_causes(2, seed), size_);
+    if (!drawn.reaches(size_)) return;
     const auto begin = std::chrono::steady_clock::now();
     const Diagnosis first = test::diagnosed(drawn.recording);
-    std::map<std::string, std::string> verdicts;
+    Verdicts verdicts;
     for (const std::string& name : drawn.names) verdicts[name] = verdict_on(name, first);
     fmt::print("{} {} {} lasers {}: {}", seed, drawn.scene, drawn.recording.scanner.rig.lasers.size(),
                drawn.motion, fmt::join(verdicts, ", "));
-    count("first", verdicts, wrong_names(first, drawn.names));
+    count("with one", verdicts, wrong_names(first, drawn.names));
     const auto best = best_proposal(first);
-    const auto is_open = [](const auto& each) { return each.second != "alone"; };
-    if (std::ranges::any_of(verdicts, is_open) && best) {
+    if (!are_all(verdicts, {"alone"}) && best) {
       const std::string& proposal = first.proposals[*best].recording;
       const auto second = as_proposed(proposal, drawn);
-      const bool is_by_itself = has_cause_of_time(first);
+      const bool is_joint = !has_cause_of_time(first);
       const Diagnosis then =
-          diagnosed(drawn, is_by_itself ? std::vector{second} : std::vector{drawn.recording.made, second});
-      for (auto& each : verdicts) {
-        const bool is_untested = std::ranges::any_of(
-            then.unshared, [&](const std::string& one) { return each.first.ends_with(one); });
-        const bool is_known = is_by_itself && each.second == "alone";
-        if (!is_untested && !is_known) each.second = verdict_on(each.first, then);
-      }
-      fmt::print("; with {}: {}", proposal, fmt::join(verdicts, ", "));
-      count("second", verdicts, wrong_names(then, drawn.names));
+          diagnosed(drawn, is_joint ? std::vector{drawn.recording.made, second} : std::vector{second});
+      update(verdicts, then, is_joint);
+      fmt::print("; with {}{}: {}", proposal, is_joint ? "" : " by itself", fmt::join(verdicts, ", "));
+      count("with the proposed one", verdicts, wrong_names(then, drawn.names));
     } else {
-      count("second", verdicts, wrong_names(first, drawn.names));
+      count("with the proposed one", verdicts, wrong_names(first, drawn.names));
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     fmt::print("; {:.0f} s\n", seconds.count());
-    std::fflush(stdout);
   }
 
-  void print() const {
-    for (const auto& [what, counts] : counts_) {
-      fmt::print("{}:", what);
-      for (const auto& [verdict, draws] : counts) fmt::print("  {} {}", draws, verdict);
-      fmt::print("\n");
-    }
-  }
+  void print() const { verdicts_.print(); }
 
  private:
-  void count(const std::string& what, const std::map<std::string, std::string>& verdicts,
-             const std::vector<std::string>& wrong) {
-    auto& counts = counts_[what];
-    ++counts["draws"];
+  void count(const std::string& recordings, const Verdicts& verdicts, const std::vector<std::string>& wrong) {
+    verdicts_.count(recordings, "draws");
     if (!wrong.empty()) {
-      ++counts["with a wrong name"];
+      verdicts_.count(recordings, "with a wrong name");
       fmt::print(" WRONG {}", fmt::join(wrong, ", "));
     }
-    if (std::ranges::all_of(verdicts, [](const auto& each) { return is_named(each.second); }))
-      ++counts["all named"];
-    for (const auto& [name, verdict] : verdicts) ++counts[verdict];
+    if (are_all(verdicts, {"alone", "heads its class"})) verdicts_.count(recordings, "all named");
+    if (are_all(verdicts, {"alone"})) verdicts_.count(recordings, "all named alone");
+    for (const auto& [name, verdict] : verdicts) verdicts_.count(recordings + ", causes", verdict);
   }
 
-  std::map<std::string, std::map<std::string, std::size_t>> counts_;
+  double size_ = 0.008;  // m
+  test::VerdictTable verdicts_;
 };
 
 }  // namespace
 }  // namespace crisp
 
 int main(int argc, char** argv) {
-  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  if (arguments.size() < 3) {
-    fmt::print(stderr, "usage: second_recording_trial FIRST DRAWS [MILLIMETRES]\n");
-    return 2;
-  }
-  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
-  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
-  const double size = arguments.size() > 3 ? std::strtod(arguments[3], nullptr) / 1e3 : 0.008;
-  try {
-    crisp::Trial trial;
-    for (std::uint64_t seed = first; seed < first + draws; ++seed) trial.run(seed, size);
-    trial.print();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return crisp::test::run_trial<crisp::Trial>(argc, argv, "second_recording_trial FIRST DRAWS [MILLIMETRES]");
 }
