@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whether the further recording that a diagnosis proposes resolves two causes at once: diagnoses recordings
-// of hidden_trial's `two`, simulates the proposed one in the same place where a cause is open, and diagnoses
-// both together (the second alone where the first has an effect of time, which recordings do not share).
-// Prints a line for each draw, and counts in the end.
+// of hidden_trial's `two`, simulates the proposed one where a cause is open, and diagnoses both together (the
+// second alone where the first has an effect of time, which recordings do not share). Prints a line for each
+// draw, and counts in the end.
 //
 //     second_recording_trial FIRST DRAWS [MILLIMETRES]      RMS by which each cause changes ranges (8)
 #include <fmt/format.h>
@@ -22,6 +22,7 @@
 #include "pipeline/data/degree.hpp"
 #include "tests/bench/trial.hpp"
 #include "tests/plugins/diagnose/noise/drawn.hpp"
+#include "tests/support/other_places.hpp"
 #include "tests/support/several_recordings.hpp"
 
 namespace crisp {
@@ -89,14 +90,6 @@ double mean_rate(const PlateTrajectory& plate) {
   return sum / (2 * std::numbers::pi);
 }
 
-simulate::Scene tilted(simulate::Scene scene, double angle) {
-  const Eigen::AngleAxisd rotation(-angle, Eigen::Vector3d::UnitX());
-  if (!scene.bodies.empty()) throw Error("a scene with bodies cannot be tilted");
-  for (auto& surface : scene.surfaces)
-    for (auto& corner : surface.corners) corner = rotation * corner;
-  return scene;
-}
-
 /// The recording that is proposed, as someone would make it: near the plan.
 simulate::SimulatedMeasurements as_proposed(const std::string& proposal, const test::Drawn& drawn) {
   simulate::ScannerSettings scanner = drawn.recording.scanner;
@@ -105,7 +98,10 @@ simulate::SimulatedMeasurements as_proposed(const std::string& proposal, const t
   const double rate = mean_rate(drawn.recording.made.plate);
   const auto is_of = [&](const char* words) { return proposal.find(words) != std::string::npos; };
   if (is_of("tilted")) {
-    scene = tilted(scene, 30 * data::kDegree);
+    scene = test::seen_from_elsewhere(
+        scene, Eigen::AngleAxisd(30 * data::kDegree, Eigen::Vector3d::UnitX()).toRotationMatrix());
+  } else if (is_of("another place")) {
+    scene = test::seen_from_elsewhere(scene, Eigen::Matrix3d::Identity(), is_of("3 times") ? 3 : 1. / 3);
   } else if (is_of("to and fro")) {
     scanner.motion = {.kind = simulate::MotionKind::reversal, .max_rate = 1.5 * rate};
   } else if (is_of("varying")) {

@@ -152,12 +152,14 @@ std::vector<Candidate> typical_causes(std::vector<Candidate> all) {
 
 std::vector<EffectResolution> effect_resolutions(const CandidateJacobian& jacobian,
                                                  const quality::NormalEquations& equations,
-                                                 const SelectionSettings& settings) {
+                                                 const SelectionSettings& settings,
+                                                 const std::function<bool(const Candidate&)>& is_wanted) {
   const Resolver resolver(jacobian, equations, settings);
   std::vector<EffectResolution> all;
   for (std::size_t c = 0; c < jacobian.candidates().size(); ++c) {
     const Candidate& one = jacobian.candidates()[c];
-    if (one.is_cause() && !one.is_shape() && !one.is_fine && is_typical(one)) add(resolver.of(c), all);
+    if (one.is_cause() && !one.is_shape() && !one.is_fine && is_typical(one) && is_wanted(one))
+      add(resolver.of(c), all);
   }
   return all;
 }

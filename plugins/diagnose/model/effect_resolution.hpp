@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,9 +36,11 @@ std::vector<Candidate> typical_causes(std::vector<Candidate> all);
 /// others absorb altogether are left out.
 ///
 /// @param equations  at the true model, in the Jacobian's columns; only its matrix and what scales it count
-std::vector<EffectResolution> effect_resolutions(const CandidateJacobian& jacobian,
-                                                 const quality::NormalEquations& equations,
-                                                 const SelectionSettings& settings);
+/// @param is_wanted  of which candidates
+std::vector<EffectResolution> effect_resolutions(
+    const CandidateJacobian& jacobian, const quality::NormalEquations& equations,
+    const SelectionSettings& settings,
+    const std::function<bool(const Candidate&)>& is_wanted = [](const Candidate&) { return true; });
 
 /// The equations that so many beams like the present ones would give, without noise.
 quality::NormalEquations planned_with(quality::NormalEquations equations, double beams);

@@ -37,10 +37,19 @@ class DirectionMap {
   std::vector<std::uint32_t> cells_ = std::vector<std::uint32_t>(kColumns * kRows, kNone);
 };
 
-quality::Surfel rotated(quality::Surfel surfel, const Eigen::Matrix3d& rotation) {
+quality::Surfel seen_from(const Standpoint& standpoint, quality::Surfel surfel) {
   for (Eigen::Vector3d* vector : {&surfel.middle, &surfel.normal, &surfel.u, &surfel.v})
-    *vector = rotation * *vector;
+    *vector = standpoint.attitude.transpose() * *vector;
+  surfel.middle *= standpoint.distance;
+  surfel.radius *= standpoint.distance;
   return surfel;
+}
+
+/// [m] The longest range that is measured there.
+float longest_from(const Standpoint& standpoint, const Measurements& beams) {
+  constexpr float kUsual = 20;  // of a laser's reach
+  const float recorded = std::ranges::max(beams.range);
+  return standpoint.distance > 1 ? std::max(kUsual, recorded) : recorded;
 }
 
 /// [m] By how much a beam must be longer to end on the surfel's plane; nothing where it grazes it.
@@ -56,7 +65,7 @@ double to_plane(const quality::Surfel& surfel, const Eigen::Vector3d& end, const
 ///
 /// @return the surfel of each beam; kNone for those without
 std::vector<std::uint32_t> cast(const SensorModel& model, PredictedRecording& recording,
-                                const DirectionMap& map) {
+                                const DirectionMap& map, float longest) {
   constexpr int kIterations = 4;
   constexpr float kShortest = 0.1F;  // [m]
   std::vector<std::uint32_t> met(recording.beams.size(), kNone);
@@ -71,7 +80,7 @@ std::vector<std::uint32_t> cast(const SensorModel& model, PredictedRecording& re
           to_plane(recording.surfels.surfels[met[i]], end, quality::vector_at(view.directions, i));
       const float range = recording.beams.range[i] + static_cast<float>(longer);
       const bool has_moved = iteration + 1 == kIterations && met[i] != before;
-      if (range > kShortest && !has_moved)
+      if (range > kShortest && range <= longest && !has_moved)
         recording.beams.range[i] = range;
       else
         met[i] = kNone;
@@ -100,18 +109,18 @@ void keep(PredictedRecording& recording, const std::vector<std::uint32_t>& met) 
 
 PredictedRecording predicted_recording(const SensorModel& model, const estimate::Sample& pattern,
                                        const quality::BeamsView& placed, const quality::Surfels& surfels,
-                                       std::vector<double> angles, const Eigen::Matrix3d& attitude) {
+                                       std::vector<double> angles, const Standpoint& standpoint) {
   PredictedRecording recording{
       .plate = pattern.plate->with_angles(std::move(angles)), .beams = pattern.beams, .surfels = {}};
   recording.beams.cos_incidence.clear();
   DirectionMap map;
   for (const quality::Surfel& surfel : surfels.surfels) {
     const auto number = static_cast<std::uint32_t>(recording.surfels.surfels.size());
-    recording.surfels.surfels.push_back(rotated(surfel, attitude.transpose()));
+    recording.surfels.surfels.push_back(seen_from(standpoint, surfel));
     for (const std::uint32_t beam : surfels.beams_of(surfel))
-      map.add(attitude.transpose() * quality::vector_at(placed.points, beam), number);
+      map.add(standpoint.attitude.transpose() * quality::vector_at(placed.points, beam), number);
   }
-  keep(recording, cast(model, recording, map));
+  keep(recording, cast(model, recording, map, longest_from(standpoint, pattern.beams)));
   return recording;
 }
 

@@ -9,7 +9,14 @@
 
 namespace crisp::diagnose {
 
-/// What a scanner would measure in the same scene if its plate turned otherwise, or if it stood tilted.
+/// Where the scanner would stand, relative to the recording's place.
+struct Standpoint {
+  /// Rotates vectors of the scanner as it would stand to those of the scanner as it stood.
+  Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();
+  double distance = 1;  ///< how many times as far surfaces would be: another place of the same shape
+};
+
+/// What a scanner would measure if its plate turned otherwise, or from another standpoint.
 struct PredictedRecording {
   PlateTrajectory plate;
   Measurements beams;        ///< n, without noise
@@ -25,9 +32,8 @@ struct PredictedRecording {
 /// @param placed   recorded beams, placed by the model
 /// @param surfels  the surfaces that those meet
 /// @param angles   [rad] the plate's, one for each of its readings
-/// @param attitude rotates vectors of the scanner as it would stand to those of the scanner as it stood
 PredictedRecording predicted_recording(const SensorModel& model, const estimate::Sample& pattern,
                                        const quality::BeamsView& placed, const quality::Surfels& surfels,
-                                       std::vector<double> angles, const Eigen::Matrix3d& attitude);
+                                       std::vector<double> angles, const Standpoint& standpoint);
 
 }  // namespace crisp::diagnose

@@ -9,15 +9,16 @@
 
 namespace crisp::diagnose {
 
-/// A further recording in the same place, and from which size on it would resolve each cause by itself.
+/// A further recording, and from which size on it would resolve each cause, diagnosed together with the
+/// recorded one; by itself where recordings do not share a cause, or one that the model has.
 struct RecordingProposal {
   std::string recording;  ///< "the plate turning to and fro, at up to 1.5 Hz"
   std::vector<EffectResolution> effects;
 };
 
-/// Predicts what other motions of the plate, and a tilt of the scanner, would resolve: by Fisher's
-/// information of recordings that are predicted from the surfaces at hand. Of several recordings the longest
-/// counts.
+/// Predicts what other motions of the plate, a tilt of the scanner, and a larger or smaller place would
+/// resolve: by Fisher's information of recordings that are predicted from the surfaces at hand. Of several
+/// recordings the longest counts.
 ///
 /// @param base  indices of the estimated base parameters (λ, τ, α, η) in the model's values
 std::vector<RecordingProposal> propose_recordings(const SensorModel& model,

@@ -11,6 +11,7 @@
 #include "pipeline/statistics/robust_estimators.hpp"
 #include "plugins/diagnose/model/surface_observations.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
+#include "tests/support/other_places.hpp"
 
 namespace crisp {
 namespace {
@@ -28,10 +29,10 @@ struct Recorded {
   SensorModel model{recording.made.truth, built_in_terms()};
   SurfaceObservations observations{model, covered(recording.sample(), -0.05, 0.05), {}, 100'000};
 
-  PredictedRecording predicted(std::vector<double> angles, const Eigen::Matrix3d& attitude) const {
+  PredictedRecording predicted(std::vector<double> angles, const Standpoint& standpoint = {}) const {
     const Sample pattern = thin_evenly(observations.sample(), 20'000, 1);
     return predicted_recording(model, pattern, observations.beams(), observations.surfels(),
-                               std::move(angles), attitude);
+                               std::move(angles), standpoint);
   }
   std::vector<double> angles() const {
     const auto all = recording.made.plate.angles();
@@ -56,7 +57,7 @@ std::vector<double> range_errors(const PredictedRecording& predicted, const Meas
 
 TEST(PredictedRecording, OfTheSameMotionHasTheRecordedRanges) {
   const Recorded recorded;
-  const PredictedRecording same = recorded.predicted(recorded.angles(), Eigen::Matrix3d::Identity());
+  const PredictedRecording same = recorded.predicted(recorded.angles());
   EXPECT_GT(same.beams.size(), 15'000U);
   auto errors = range_errors(same, recorded.observations.sample().beams);
   ASSERT_GT(errors.size(), 15'000U);
@@ -68,7 +69,7 @@ TEST(PredictedRecording, OfAnotherMotionHasTheRangesOfItsSimulation) {
   // A quarter of a turn further on all the time: simulated by another nominal azimuth of all lasers.
   std::vector<double> angles = recorded.angles();
   for (double& angle : angles) angle += std::numbers::pi / 2;
-  const PredictedRecording turned = recorded.predicted(angles, Eigen::Matrix3d::Identity());
+  const PredictedRecording turned = recorded.predicted(angles);
   ScannerSettings scanner = recorded.recording.scanner;
   scanner.truth = recorded.recording.made.truth;
   for (auto& laser : scanner.truth.lasers) laser.lambda.value += std::numbers::pi / 2;
@@ -78,11 +79,23 @@ TEST(PredictedRecording, OfAnotherMotionHasTheRangesOfItsSimulation) {
   EXPECT_LT(quantile_in_place(errors, 0.9), 0.04);
 }
 
+TEST(PredictedRecording, OfALargerPlaceHasTheRangesOfItsSimulation) {
+  const Recorded recorded;
+  const PredictedRecording far = recorded.predicted(recorded.angles(), {.distance = 3});
+  ScannerSettings scanner = recorded.recording.scanner;
+  scanner.truth = recorded.recording.made.truth;
+  const auto simulated =
+      test::recorded(scanner, test::seen_from_elsewhere(office(), Eigen::Matrix3d::Identity(), 3));
+  auto errors = range_errors(far, simulated.made.beams);
+  ASSERT_GT(errors.size(), 10'000U);
+  EXPECT_LT(quantile_in_place(errors, 0.9), 0.06) << "m; the walls' distance is known to some mm, times 3";
+}
+
 TEST(PredictedRecording, OfATiltedScannerLiesOnTheSameSurfaces) {
   const Recorded recorded;
   const Eigen::Matrix3d attitude =
       Eigen::AngleAxisd(30 * kDegree, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const PredictedRecording tilted = recorded.predicted(recorded.angles(), attitude);
+  const PredictedRecording tilted = recorded.predicted(recorded.angles(), {.attitude = attitude});
   EXPECT_GT(tilted.beams.size(), 15'000U);
   const PlacedBeams placed(recorded.model, tilted.sample());
   for (const Surfel& surfel : tilted.surfels.surfels) {

@@ -47,20 +47,44 @@ EffectResolution resolution_by(const std::vector<RecordingProposal>& all, const 
   return {};
 }
 
-TEST(RecordingProposals, ShowWhatTheRecordingDoesNot) {
-  const auto recording = test::hidden(6, 4, office(), {});
-  const SensorModel model(recording.made.truth, built_in_terms());
-  const DiagnosisSettings settings;
-  const SurfaceObservations observations(model, covered(recording.sample(), -0.05, 0.05), {}, settings.beams);
-  const auto all = propose_recordings(model, free_parameters(model, recording.made.beams, {}).free,
-                                      observations, built_in_terms(), settings);
-  ASSERT_EQ(all.size(), 4U);
+class ProposedRecordings : public testing::Test {
+ protected:
+  std::vector<RecordingProposal> proposals(const Calibration& calibration) {
+    const SensorModel model(calibration, built_in_terms());
+    const SurfaceObservations observations(model, covered(recording_.sample(), -0.05, 0.05), {},
+                                           settings_.beams);
+    return propose_recordings(model, free_parameters(model, recording_.made.beams, {}).free, observations,
+                              built_in_terms(), settings_);
+  }
+
+  const test::Recording recording_ = test::hidden(6, 4, office(), {});
+  DiagnosisSettings settings_;
+};
+
+TEST_F(ProposedRecordings, ShowWhatTheRecordingDoesNot) {
+  const auto all = proposals(recording_.made.truth);
+  ASSERT_EQ(all.size(), 5U);
   // The plate turned one way only.
   EXPECT_TRUE(std::isfinite(resolution_by(all, "to and fro", "encoder.backlash").detectable));
   EXPECT_FALSE(std::isfinite(resolution_by(all, "twice", "encoder.backlash").detectable));
   // Upright walls show a tilt of the scan plane as a cone, inclined ones do not.
   EXPECT_FALSE(std::isfinite(resolution_by(all, "twice", "laser2.mount.scan_plane_tilt").resolvable));
   EXPECT_LT(resolution_by(all, "tilted", "laser2.mount.scan_plane_tilt").resolvable, 0.005);
+}
+
+TEST_F(ProposedRecordings, CountByThemselvesWhereTheModelHasAnEffectOfTime) {
+  settings_.beams = 10'000'000;     // no limit to those of both
+  settings_.selection.visible = 0;  // nor of the effects that count
+  Calibration drifting = recording_.made.truth;
+  const auto drift = built_in_terms().get("range.warmup");
+  drifting.lasers[2].terms.push_back(neutral_parameters(drift->info()));
+  const auto together = proposals(recording_.made.truth);
+  const auto alone = proposals(drifting);
+  for (const char* const cause : {"laser1.mirror.cone", "laser2.range.scale", "laser1.mirror.eccentricity"}) {
+    const double of_both = resolution_by(together, "twice", cause).detectable;
+    const double of_one = resolution_by(alone, "twice", cause).detectable;
+    EXPECT_NEAR(of_one / of_both, std::sqrt(2), 0.1) << cause << ": twice the beams";
+  }
 }
 
 }  // namespace
