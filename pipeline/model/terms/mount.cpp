@@ -18,8 +18,9 @@ struct TangentialOffset final : DifferentiableTerm<TangentialOffset> {
         .scope = Scope::kLaser,
         .parameters =
             {{.name = "y", .unit = "m", .lower = -0.5, .upper = 0.5, .summary = "along the tangent"}},
-        .details = "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm.",
-        .resolvable_by = "surfaces near and far, to the front and to the back of the laser"};
+        .details =
+            "`origin += (0, y, 0)` in the plate's frame at the laser. Typically 1 to 5 mm. With other λ, τ and α the laser is in the same place, so that no recording shows it.",
+        .resolvable_by = "no recording, since it is another lambda, tau and alpha"};
     return kInfo;
   }
   template <class T>
