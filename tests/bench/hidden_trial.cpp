@@ -52,7 +52,7 @@ void count_hidden(const Drawn& drawn, const Diagnosis& diagnosis, const std::str
       return hypothesis.accepted && hypothesis.candidate.is_cause() && matches(hypothesis);
     });
   };
-  if (taken([&](const Hypothesis& hypothesis) { return hypothesis.candidate.name == name; })) {
+  if (taken([&](const Hypothesis& hypothesis) { return hypothesis.candidate.cause_name() == name; })) {
     ++outcome.named;
     for (const auto& reported : test::estimates_of(diagnosis, drawn.recording.scanner.truth, name)) {
       ++outcome.parameters;
@@ -88,7 +88,7 @@ Outcome outcome_of(const Drawn& drawn, const Diagnosis& diagnosis) {
     if (!hypothesis.accepted) continue;
     if (hypothesis.candidate.is_cause()) {
       const bool right = std::ranges::any_of(drawn.names, [&](const std::string& name) {
-        return hypothesis.candidate.name == name || stands_for(hypothesis, name);
+        return hypothesis.candidate.cause_name() == name || stands_for(hypothesis, name);
       });
       outcome.wrong += right ? 0 : 1;
     } else {

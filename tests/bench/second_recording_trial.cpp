@@ -42,7 +42,7 @@ std::string verdict_on(const std::string& name, const Diagnosis& diagnosis) {
   std::string verdict = "missed";
   for (const Hypothesis& one : diagnosis.hypotheses) {
     if (!one.accepted || !one.candidate.is_cause()) continue;
-    if (one.candidate.name == name) return is_alone(one) ? "alone" : "heads its class";
+    if (one.candidate.cause_name() == name) return is_alone(one) ? "alone" : "heads its class";
     if (stands_for(one, name)) verdict = "in a class";
   }
   if (verdict != "missed") return verdict;
@@ -56,9 +56,10 @@ std::vector<std::string> wrong_names(const Diagnosis& diagnosis, const std::vect
   std::vector<std::string> wrong;
   for (const Hypothesis& one : diagnosis.hypotheses) {
     if (!one.accepted || !one.candidate.is_cause()) continue;
-    const bool right = std::ranges::any_of(
-        hidden, [&](const std::string& name) { return one.candidate.name == name || stands_for(one, name); });
-    if (!right) wrong.push_back(one.candidate.name);
+    const bool right = std::ranges::any_of(hidden, [&](const std::string& name) {
+      return one.candidate.cause_name() == name || stands_for(one, name);
+    });
+    if (!right) wrong.push_back(one.candidate.cause_name());
   }
   return wrong;
 }
