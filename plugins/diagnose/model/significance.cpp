@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -96,15 +97,26 @@ std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& cand
 
 void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses) {
   constexpr double kOfScenes = 0.1;  // [σ] RMS effect of non-planar surfaces
+  constexpr double kTimes = 2;       // more than lasers that see the same surfaces differ in it
   const auto visible_of = [](const Hypothesis* one) { return one->test.visible; };
   std::map<std::string, std::vector<Hypothesis*>> alike;
   for (Hypothesis& one : hypotheses) {
     if (one.accepted && one.candidate.laser()) alike[one.candidate.term.term].push_back(&one);
   }
-  for (const auto& [term, some] : alike) {
+  for (auto& [term, some] : alike) {
     if (some.size() < 2) continue;
-    const double largest = std::ranges::max(some, {}, visible_of)->test.visible;
+    std::ranges::sort(some, std::greater{}, visible_of);
+    const double largest = some[0]->test.visible;
+    const double ratio = largest / some[1]->test.visible;
     for (Hypothesis* one : some) {
+      if (one == some[0] && ratio > kTimes) {
+        one->decide({.name = "size relative to other lasers'",
+                     .statistic = ratio,
+                     .threshold = kTimes,
+                     .passed = true},
+                    {});
+        continue;
+      }
       one->decide({.name = "size common to lasers [noise]",
                    .statistic = largest,
                    .threshold = kOfScenes,

@@ -15,7 +15,8 @@ std::vector<std::optional<Eigen::Index>> parameter_indices(const Candidate& cand
                                                            const estimate::Outcome& outcome);
 
 /// Rejects small causes that several lasers share: deviations of real surfaces from planes affect all lasers
-/// alike, and many causes absorb a part of them.
+/// alike, and many causes absorb a part of them. A cause that is much larger in one laser is its own: the
+/// others share it only because surfaces follow that laser.
 void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses);
 
 /// Rejects accepted terms that are not significant in the joint fit: by the Wald test of all parameters of a

@@ -71,14 +71,17 @@ TEST(Significance, RejectsASmallCauseThatSeveralLasersShare) {
     return one;
   };
   std::vector<Hypothesis> found = {seen("range.intensity", 0, 0.03), seen("range.intensity", 2, 0.04),
-                                   seen("range.offset", 0, 0.03), seen("range.offset", 1, 0.11),
-                                   seen("range.scale", 1, 0.01)};
+                                   seen("range.offset", 0, 0.03),    seen("range.offset", 1, 0.11),
+                                   seen("range.scale", 1, 0.01),     seen("range.cyclic", 0, 0.02),
+                                   seen("range.cyclic", 1, 0.06),    seen("range.cyclic", 2, 0.01)};
   reject_scene_artifacts(found);
   const auto accepted = [&](std::size_t k) { return found.at(k).accepted; };
   EXPECT_FALSE(accepted(0) || accepted(1));
   EXPECT_NE(found[0].rejected, "");
   EXPECT_TRUE(accepted(2) && accepted(3)) << "one of them is large";
   EXPECT_TRUE(accepted(4)) << "a cause of one laser only";
+  EXPECT_TRUE(accepted(6)) << "it is much larger in this laser";
+  EXPECT_FALSE(accepted(5) || accepted(7)) << "what surfaces leave to the others";
 }
 
 TEST(Significance, TestsTheParametersOfATermJointly) {
