@@ -36,12 +36,13 @@ class VerdictTable {
 template <typename Trial>
 int run_trial(int argc, char** argv, const char* usage, std::size_t fewest_of_rest = 0) {
   const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  if (arguments.size() < 3 + fewest_of_rest) {
+  const bool is_complete = arguments.size() >= 3 + fewest_of_rest;
+  const std::uint64_t first = is_complete ? std::strtoull(arguments[1], nullptr, 10) : 0;
+  const std::uint64_t draws = is_complete ? std::strtoull(arguments[2], nullptr, 10) : 0;
+  if (draws == 0) {
     fmt::print(stderr, "usage: {}\n", usage);
     return 2;
   }
-  const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
-  const std::uint64_t draws = std::strtoull(arguments[2], nullptr, 10);
   try {
     Trial trial({arguments.begin() + 3, arguments.end()});
     for (std::uint64_t seed = first; seed < first + draws; ++seed) {
