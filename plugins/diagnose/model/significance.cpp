@@ -107,12 +107,12 @@ void reject_scene_artifacts(std::vector<Hypothesis>& hypotheses) {
     if (some.size() < 2) continue;
     std::ranges::sort(some, std::greater{}, visible_of);
     const double largest = some[0]->test.visible;
-    const double ratio = largest / some[1]->test.visible;
+    const double of_others = kTimes * some[1]->test.visible;
     for (Hypothesis* one : some) {
-      if (one == some[0] && ratio > kTimes) {
-        one->decide({.name = "size relative to other lasers'",
-                     .statistic = ratio,
-                     .threshold = kTimes,
+      if (one == some[0] && largest > of_others) {
+        one->decide({.name = "size against twice that of other lasers [noise]",
+                     .statistic = largest,
+                     .threshold = of_others,
                      .passed = true},
                     {});
         continue;
