@@ -48,8 +48,9 @@ quality::Surfel seen_from(const Standpoint& standpoint, quality::Surfel surfel) 
 /// [m] The longest range that is measured there.
 float longest_from(const Standpoint& standpoint, const Measurements& beams) {
   constexpr float kUsual = 20;  // of a laser's reach
-  const float recorded = std::ranges::max(beams.range);
-  return standpoint.distance > 1 ? std::max(kUsual, recorded) : recorded;
+  float longest = standpoint.distance > 1 ? kUsual : 0;
+  for (const float range : beams.range) longest = std::max(longest, range);
+  return longest;
 }
 
 /// [m] By how much a beam must be longer to end on the surfel's plane; nothing where it grazes it.

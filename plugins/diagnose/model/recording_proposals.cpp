@@ -105,8 +105,9 @@ std::vector<Plan> plans(const estimate::Sample& sample) {
   return all;
 }
 
-bool is_of_any_recording(const Candidate& candidate, const TermRegistry& terms) {
-  return terms.get(candidate.term.term)->info().counts_from == CountsFrom::kNothing;
+bool is_shared_by_recordings(const Candidate& candidate, const TermRegistry& terms) {
+  constexpr Coverage kOfTwo{.one_begin = false, .one_zero = false};
+  return kOfTwo.shares(terms.get(candidate.term.term)->info().counts_from);
 }
 
 /// Fisher's information of predicted recordings, as if they had as many beams as the recorded one.
@@ -133,7 +134,7 @@ class Predictor {
   std::vector<EffectResolution> resolutions(const Plan& plan) const {
     const auto planned = equations_of(plan);
     if (!planned) return {};
-    const auto is_shared = [&](const Candidate& one) { return is_of_any_recording(one, terms_); };
+    const auto is_shared = [&](const Candidate& one) { return is_shared_by_recordings(one, terms_); };
     const auto is_everything_shared = std::ranges::all_of(
         jacobian_->candidates(), [&](const Candidate& one) { return !one.in_model || is_shared(one); });
     if (!here_ || !is_everything_shared) return effect_resolutions(*jacobian_, *planned, settings_.selection);

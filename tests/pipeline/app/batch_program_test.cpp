@@ -149,7 +149,10 @@ TEST_F(BatchTest, EndsEachJobThatTakesTooLong) {
   for (const std::string recording : {"a", "b"}) {
     EXPECT_EQ(field(recording, "status"), "failed");
     EXPECT_THAT(field(recording, "reasons"), HasSubstr("it exceeded 0.2 s"));
+    put(recording + ".pcap", "done");
   }
+  EXPECT_EQ(batch({"--timeout", "10min"}).status, 0);
+  EXPECT_EQ(field("b", "status"), "done") << "in time";
 }
 
 TEST_F(BatchTest, StopsInGoodOrderOnASignalAndGoesOnLater) {
