@@ -2,8 +2,10 @@
 #include "pipeline/estimate/shared_errors.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "pipeline/quality/vector_at.hpp"
 #include "pipeline/statistics/dense_solvers.hpp"
@@ -71,6 +73,26 @@ Division recording_blocks(const Measurements& beams) {
   return blocks;
 }
 
+Division quantization_blocks(const Sample& sample, double step) {
+  Division blocks = recording_blocks(sample.beams);
+  // A laser's beams follow in order of time, and lasers one after another: the earliest beam of each block.
+  std::map<std::uint32_t, double> begin;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto [of_block, is_new] = begin.try_emplace(blocks[i], sample.beams.time[i]);
+    if (!is_new) of_block->second = std::min(of_block->second, sample.beams.time[i]);
+  }
+  std::vector<std::uint32_t> merged;
+  std::optional<PlateState> first;  // of the merged block
+  for (const auto& [block, time] : begin) {
+    const auto state = sample.plate->at(time);
+    const bool stands = first && state && std::abs(state->angle - first->angle) < step;
+    if (!stands) first = state;
+    merged.push_back(merged.empty() ? 0 : merged.back() + (stands ? 0 : 1));
+  }
+  for (std::uint32_t& block : blocks) block = merged[block];
+  return blocks;
+}
+
 Division scan_blocks(const Measurements& beams) {
   const auto of_scan = beams_of_scans(beams);
   Division blocks = recording_blocks(beams);
@@ -130,9 +152,9 @@ Eigen::MatrixXd widened(const Eigen::MatrixXd& covariance, const Eigen::VectorXd
   return covariance + excess.asDiagonal() * covariance * excess.asDiagonal();
 }
 
-std::vector<Division> shared_errors(const Measurements& beams, const quality::Surfels& surfels,
-                                    const quality::BeamsView& placed) {
-  return {recording_blocks(beams), scan_blocks(beams), place_blocks(surfels, placed)};
+std::vector<Division> shared_errors(const Sample& sample, const quality::Surfels& surfels,
+                                    const quality::BeamsView& placed, double step) {
+  return {quantization_blocks(sample, step), scan_blocks(sample.beams), place_blocks(surfels, placed)};
 }
 
 }  // namespace crisp::estimate

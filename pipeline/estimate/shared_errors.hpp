@@ -5,16 +5,21 @@
 
 #include <vector>
 
-#include <crisp/measurements.hpp>
-
+#include "pipeline/estimate/sample.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
 namespace crisp::estimate {
 
-/// For each beam the piece of the recording that it is of. Pieces share no error: what is left of the
-/// encoder's steps is gone after a tenth of a second; and they are many enough (a hundred, at least) to see
-/// by how much their block_scores scatter. Nothing is a piece in which no beam was fired.
+/// Division of a recording into blocks of a tenth of a second, or of a hundredth of the recording if that is
+/// shorter. Blocks without beams do not exist.
 quality::Division recording_blocks(const Measurements& beams);
+
+/// The same division, where the plate stands or creeps with longer blocks: until it has turned by a step of
+/// the encoder, all beams have the same quantization error. While the plate turns, its trajectory is smoothed
+/// over many steps, and blocks of a tenth of a second are nearly independent.
+///
+/// @param step  [rad] of the encoder; 0: not quantized
+quality::Division quantization_blocks(const Sample& sample, double step);
 
 /// For each beam the hundredth of its laser's scan that it is of: what each direction of a mirror is off by
 /// for good, as where it has a weight of its own between two peaks of noise, no piece of the recording shows.
@@ -34,11 +39,13 @@ std::uint32_t place_on(const quality::Surfel& surfel, const Eigen::Vector2d& foo
 /// the first.
 quality::Division place_blocks(const quality::Surfels& surfels, const quality::BeamsView& beams);
 
-/// All of these.
+/// Divisions into blocks of beams with correlated errors: by quantization_blocks(), scan_blocks() and
+/// place_blocks().
 ///
-/// @param placed  the same beams
-std::vector<quality::Division> shared_errors(const Measurements& beams, const quality::Surfels& surfels,
-                                             const quality::BeamsView& placed);
+/// @param placed  the beams of the sample
+/// @param step    [rad] of the encoder; 0: not quantized
+std::vector<quality::Division> shared_errors(const Sample& sample, const quality::Surfels& surfels,
+                                             const quality::BeamsView& placed, double step);
 
 /// @param equations  of m parameters, at their optimum, with divisions
 /// @return  m: by how much larger their standard errors are than the noise of single beams makes them, as the

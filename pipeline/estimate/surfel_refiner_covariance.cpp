@@ -55,7 +55,7 @@ void SurfelRefiner::widen_by_shared_errors() {
   const PlacedBeams placed(model_, sample_);
   const auto equations = quality::normal_equations(found_, placed.view(noise_), free_.size(),
                                                    surfel_rows(model_, sample_, free_), settings_.surfels,
-                                                   shared_errors(sample_.beams, found_, placed.view(noise_)));
+                                                   shared_errors(sample_, found_, placed.view(noise_), 0));
   const Eigen::VectorXd of_prior =
       covariance_.diagonal().cwiseQuotient(ranges_of(settings_.prior, model_, free_).cwiseAbs2());
   covariance_ = widened(covariance_, widening_with_prior(widening(equations), of_prior));

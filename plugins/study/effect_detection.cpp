@@ -45,8 +45,7 @@ EffectDetection effect_detection(const simulate::ScannerSettings& scanner, const
   const estimate::LagRange lags = estimate::lag_range(truth, 0);
   const estimate::Sample sample =
       estimate::covered({.beams = simulated.beams, .plate = &simulated.plate}, lags.earliest, lags.latest);
-  const diagnose::SurfaceObservations observations(truth, sample, diagnosis.refinement.surfels,
-                                                   diagnosis.beams);
+  const diagnose::SurfaceObservations observations(truth, sample, diagnosis.refinement, diagnosis.beams);
   const estimate::FreeParameters base =
       estimate::identifiable_parameters(estimate::free_parameters(truth, sample.beams, {}), truth,
                                         observations.sample(), estimate::ParameterPrior{});

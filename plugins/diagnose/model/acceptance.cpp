@@ -18,6 +18,10 @@ void refit_accepted(Diagnosis& diagnosis, const AcceptanceFits& fits) {
   for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
     if (hypothesis.accepted) kept.push_back(hypothesis.candidate);
   }
+  if (kept.empty()) {
+    diagnosis.after = diagnosis.before;  // a fit from another start would differ by its tolerance
+    return;
+  }
   const Calibration found = diagnosis.after.outcome.model.calibration();
   diagnosis.after = fits.refit(with_terms(found, with_values_of(found, kept)));
 }

@@ -138,7 +138,7 @@ CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser,
                                const quality::SurfelSettings& settings)
     : halves_(std::move(halves)), settings_(settings) {
   constexpr std::size_t kBeams = 200'000;
-  const SurfaceObservations observations(chooser, halves_.held_out, settings, kBeams);
+  const SurfaceObservations observations(chooser, halves_.held_out, {.surfels = settings}, kBeams);
   surfels_ = observations.surfels();
   halves_.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
   reference_ = observations.placed();

@@ -262,9 +262,9 @@ class Diagnoser {
     if (!observed_ || observed_->model.names() != model.names() ||
         !std::ranges::equal(observed_->model.values(), model.values())) {
       observed_.reset();
-      observed_.emplace(Observed{.model = model,
-                                 .observations = {model, inside_, settings_.refinement.surfels,
-                                                  settings_.beams, settings_.interrupted}});
+      observed_.emplace(Observed{
+          .model = model,
+          .observations = {model, inside_, settings_.refinement, settings_.beams, settings_.interrupted}});
     }
     return observed_->observations;
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -97,6 +98,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   estimate::Sample sample = collected_.sample();
   context.count("beams left out of the diagnosis of a long recording", collected_.left_out());
   settings_.refinement.surfels.noise = noise_;
+  settings_.refinement.angle_step = std::abs(context.rig().plate.angle_per_count());
   settings_.refinement.prior.nominal = estimate::nominal_values(context.rig());
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const SensorModel start(*start_, terms);

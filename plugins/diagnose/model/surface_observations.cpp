@@ -91,11 +91,11 @@ Coverage coverage_of(const estimate::Sample& sample) {
 }
 
 SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sample sample,
-                                         const quality::SurfelSettings& settings, std::size_t most,
+                                         const estimate::RefinementSettings& settings, std::size_t most,
                                          std::function<bool()> interrupted, SurfacesOf of)
     : sample_(std::move(sample)),
       placed_(model, sample_),
-      settings_(settings),
+      settings_(settings.surfels),
       interrupted_(std::move(interrupted)) {
   all_ = surfaces(of, placed_.view(), settings_);
   sample_.beams.cos_incidence = estimate::incidences(all_, placed_.view());
@@ -109,7 +109,7 @@ SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sam
   if (!noise_.empty()) quality::refine_all(all_, beams(), settings_);
   surfels_ = thinned(all_, most);
   coverage_ = coverage_of(sample_);
-  shared_ = estimate::shared_errors(sample_.beams, all_, beams());
+  shared_ = estimate::shared_errors(sample_, all_, beams(), settings.angle_step);
 }
 
 quality::NormalEquations SurfaceObservations::equations(const CandidateJacobian& jacobian,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/estimate/placed_beams.hpp"
+#include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/diagnose/model/candidate_jacobian.hpp"
 
 namespace crisp::diagnose {
@@ -26,7 +27,7 @@ class SurfaceObservations {
   /// @param most    number of beams on surfels(), evenly subsampled
   /// @param interrupted  cancellation query of equations(), called from several threads
   SurfaceObservations(const SensorModel& model, estimate::Sample sample,
-                      const quality::SurfelSettings& settings, std::size_t most,
+                      const estimate::RefinementSettings& settings, std::size_t most,
                       std::function<bool()> interrupted = {}, SurfacesOf of = SurfacesOf::kRefinement);
 
   const estimate::Sample& sample() const { return sample_; }

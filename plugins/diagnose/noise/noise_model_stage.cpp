@@ -30,8 +30,8 @@ constexpr std::size_t kTooFew = 1000;  // minimum number of ranges for a noise m
 
 /// @param noise  [m] flatness of the selected surfaces
 SurfaceObservations all_of(const SensorModel& model, const estimate::Sample& sample, double noise) {
-  quality::SurfelSettings settings;
-  settings.noise = noise;
+  estimate::RefinementSettings settings;
+  settings.surfels.noise = noise;
   return {model, sample, settings, std::numeric_limits<std::size_t>::max(), {}, SurfacesOf::kSearch};
 }
 
@@ -142,7 +142,7 @@ std::size_t DiagnoseNoiseModelStage::add_laser(std::size_t laser, const Associat
     context.print(fmt::format("{}: {} edges crossed, {:.1f} % of them with a mixed pixel", name,
                               edges.mixed.size(), 100 * edges.share()));
   }
-  if (const auto mixed = mixed_pixels(name, edges, context.seed())) {
+  if (const auto mixed = mixed_pixels(name, edges)) {
     found.findings.push_back(*mixed);
     plots.push_back(edge_plot(name, edges));
   }

@@ -2,12 +2,11 @@
 #include "plugins/diagnose/scene/mixed_pixels.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
 #include <map>
 
-#include "pipeline/statistics/bootstrap.hpp"
 #include "pipeline/statistics/robust_estimators.hpp"
 
 namespace crisp::diagnose {
@@ -124,18 +123,21 @@ double Crossings::share() const {
              : static_cast<double>(std::ranges::count(mixed, true)) / static_cast<double>(mixed.size());
 }
 
-double Crossings::median_share() const {
-  struct Edge {
-    std::size_t crossings = 0, mixed = 0;
-    double share() const { return static_cast<double>(mixed) / static_cast<double>(crossings); }
-  };
+std::vector<Edge> Crossings::by_edge() const {
   std::map<std::size_t, Edge> all;
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    ++all[edges[k]].crossings;
+    all[edges[k]].crossings += 1;
     all[edges[k]].mixed += mixed[k] ? 1 : 0;
   }
+  std::vector<Edge> list;
+  for (const auto& [number, edge] : all) list.push_back(edge);
+  return list;
+}
+
+double Crossings::median_share() const {
   std::vector<double> shares;
-  for (const auto& [number, edge] : all) shares.insert(shares.end(), edge.crossings, edge.share());
+  for (const Edge& edge : by_edge())
+    shares.insert(shares.end(), static_cast<std::size_t>(edge.crossings), edge.share());
   return shares.empty() ? 0 : statistics::median_in_place(shares);
 }
 
@@ -162,29 +164,42 @@ Crossings crossings_of(std::size_t laser, const Measurements& beams, const Point
   return crossings;
 }
 
-std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& crossings,
-                                    std::uint64_t seed) {
+MixedShare mixed_share(std::span<const Edge> edges) {
+  double crossings = 0;
+  double mixed = 0;
+  double squares = 0;
+  for (const Edge& edge : edges) {
+    crossings += edge.crossings;
+    mixed += edge.mixed;
+    squares += edge.crossings * edge.crossings;
+  }
+  if (!(crossings > 0)) return {};
+  MixedShare share{.value = mixed / crossings, .degrees_of_freedom = crossings * crossings / squares - 1};
+  double scatter = 0;
+  for (const Edge& edge : edges) scatter += std::pow(edge.mixed - share.value * edge.crossings, 2);
+  const auto count = static_cast<double>(edges.size());
+  const double between = count > 1 ? scatter * count / (count - 1) : 0;
+  const double within = share.value * (1 - share.value) * crossings;
+  share.std_error = std::sqrt(std::max({between, within, 1.0})) / crossings;
+  return share;
+}
+
+std::optional<Finding> mixed_pixels(const std::string& scope, const Crossings& crossings) {
   constexpr double kOfThinThings = 0.03;
   constexpr double kRare = 0.002;
   constexpr std::size_t kMin = 50;
-  constexpr std::size_t kTogether = 20;  // crossings per resampling unit (bootstrap): those of one scan
-  constexpr std::size_t kDrawings = 999;
-  const std::size_t n = crossings.mixed.size();
-  if (n < kMin) return std::nullopt;
-  const statistics::Spread spread = statistics::bootstrap(
-      n, std::min(kTogether, n / 10), seed, kDrawings, [&](const std::vector<std::size_t>& drawn) {
-        const auto mixed = std::ranges::count_if(drawn, [&](std::size_t k) { return crossings.mixed[k]; });
-        return static_cast<double>(mixed) / static_cast<double>(drawn.size());
-      });
-  const double error = std::max(spread.std_error, 1 / static_cast<double>(n));
-  const double p = cdf(complement(boost::math::normal(), (crossings.share() - kOfThinThings) / error));
+  if (crossings.mixed.size() < kMin) return std::nullopt;
+  const MixedShare share = mixed_share(crossings.by_edge());
+  if (!(share.degrees_of_freedom > 0)) return std::nullopt;
+  const double p = cdf(complement(boost::math::students_t(share.degrees_of_freedom),
+                                  (share.value - kOfThinThings) / share.std_error));
   if (!(p < kRare) || crossings.median_share() <= kOfThinThings) return std::nullopt;
   return Finding{.cause = "noise.mixed_pixels",
                  .scope = scope,
                  .parameters = {{.name = "share_of_edges",
                                  .unit = "1",
-                                 .value = crossings.share(),
-                                 .std_error = error,
+                                 .value = share.value,
+                                 .std_error = share.std_error,
                                  .free = true}},
                  .explained_fraction = kNotTested,
                  .p_value = p,

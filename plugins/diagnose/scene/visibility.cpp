@@ -2,6 +2,7 @@
 #include "plugins/diagnose/scene/visibility.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -19,6 +20,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 struct Observation {
   std::size_t laser = 0;
   std::size_t column = 0;  // of plate angle
+  double place = 0;        // of the plate angle within the column, 0 to 1
   std::size_t row = 0;     // of mirror angle
   std::size_t when = 0;    // half turns of the plate since the first beam, at the median rate
 };
@@ -58,23 +60,29 @@ class RepeatGrid {
     const auto state = plate_.at(beams.time[i]);
     if (!state) return std::nullopt;
     const double phase = state->angle / kTurn - std::floor(state->angle / kTurn);
+    const double columns = phase * static_cast<double>(columns_);
+    const std::size_t column = std::min(columns_ - 1, static_cast<std::size_t>(columns));
     const double mirror = double{beams.mirror_angle[i]} / kTurn + 0.5;
-    return Observation{
-        .laser = beams.laser[i],
-        .column = std::min(columns_ - 1, static_cast<std::size_t>(phase * static_cast<double>(columns_))),
-        .row = static_cast<std::size_t>((mirror - std::floor(mirror)) * double{kRows}) % kRows,
-        .when = static_cast<std::size_t>((beams.time[i] - start_) / half_turn_)};
+    return Observation{.laser = beams.laser[i],
+                       .column = column,
+                       .place = columns - static_cast<double>(column),
+                       .row = static_cast<std::size_t>((mirror - std::floor(mirror)) * double{kRows}) % kRows,
+                       .when = static_cast<std::size_t>((beams.time[i] - start_) / half_turn_)};
   }
-  /// Cells around a cell and the cell itself; fewer at the ends of the mirror's sweep.
-  std::vector<std::size_t> around(std::size_t cell) const {
+  /// Cells of the same row in the column before, the same and the next one.
+  std::array<std::size_t, 3> along_row(std::size_t cell) const {
     const std::size_t row = cell % kRows;
     const std::size_t column = cell / kRows % columns_;
     const std::size_t laser = cell / kRows / columns_;
+    const auto at = [&](std::size_t c) { return (laser * columns_ + c % columns_) * kRows + row; };
+    return {at(column + columns_ - 1), cell, at(column + 1)};
+  }
+  /// Cells around a cell and the cell itself; fewer at the ends of the mirror's sweep.
+  std::vector<std::size_t> around(std::size_t cell) const {
     std::vector<std::size_t> cells;
-    for (const std::size_t c : {column + columns_ - 1, column, column + 1}) {
-      for (const std::size_t r : {row + kRows - 1, row, row + 1}) {
-        cells.push_back((laser * columns_ + c % columns_) * kRows + r % kRows);
-      }
+    for (const std::size_t c : along_row(cell)) {
+      const std::size_t row = c % kRows;
+      for (const std::size_t r : {row + kRows - 1, row, row + 1}) cells.push_back(c - row + r % kRows);
     }
     return cells;
   }
@@ -97,9 +105,11 @@ class VisibilityGrid {
   explicit VisibilityGrid(const RepeatGrid& grid) : whens_(grid.whens()), cells_(grid.cells()) {}
 
   /// Adds an observation; those of a cell must be in order of time.
-  void add(std::size_t cell, std::size_t when, Visibility visibility) {
+  void add(std::size_t cell, const Observation& observation, Visibility visibility) {
     auto& counts = cells_[cell];
-    if (counts.empty() || counts.back().when != when) counts.push_back({static_cast<std::uint32_t>(when)});
+    const auto when = static_cast<std::uint32_t>(observation.when);
+    if (counts.empty() || counts.back().when != when) counts.push_back({when});
+    counts.back().places += observation.place;
     if (visibility == Visibility::kSurface) ++counts.back().surface;
     if (visibility == Visibility::kHidden) ++counts.back().hidden;
   }
@@ -115,6 +125,25 @@ class VisibilityGrid {
     };
     return saw(Visibility::kSurface) && saw(Visibility::kHidden);
   }
+  /// Whether the changes may be the outlines of static objects, from three cells of consecutive plate angles:
+  /// the visibility then alternates less often in order of the plate angle than in order of time.
+  bool may_be_static(const std::array<std::size_t, 3>& cells) const {
+    std::size_t in_time = 0;
+    std::vector<std::pair<double, Visibility>> by_angle;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      std::vector<Visibility> by_time;
+      for (const Count& count : cells_[cells[k]]) {
+        if (count.visibility() == Visibility::kNone) continue;
+        by_time.push_back(count.visibility());
+        by_angle.emplace_back(static_cast<double>(k) + count.place(), count.visibility());
+      }
+      in_time += alternations(by_time);
+    }
+    std::ranges::sort(by_angle);
+    std::vector<Visibility> sorted;
+    for (const auto& [place, visibility] : by_angle) sorted.push_back(visibility);
+    return alternations(sorted) < in_time;
+  }
   std::size_t hidden(std::size_t cell) const {
     std::size_t sum = 0;
     for (const Count& count : cells_[cell]) sum += count.hidden;
@@ -125,6 +154,9 @@ class VisibilityGrid {
   struct Count {
     std::uint32_t when = 0;
     std::uint16_t surface = 0, hidden = 0;
+    double places = 0;  // their sum
+
+    double place() const { return places / (surface + hidden); }
 
     Visibility visibility() const {
       constexpr double kAgree = 0.8;
@@ -135,6 +167,12 @@ class VisibilityGrid {
       return hidden >= kAgree * all ? Visibility::kHidden : Visibility::kNone;
     }
   };
+  static std::size_t alternations(const std::vector<Visibility>& views) {
+    std::size_t count = 0;
+    for (std::size_t k = 1; k < views.size(); ++k) count += views[k] != views[k - 1] ? 1 : 0;
+    return count;
+  }
+
   std::size_t whens_;
   std::vector<std::vector<Count>> cells_;
 };
@@ -142,7 +180,9 @@ class VisibilityGrid {
 ChangingDirections changing_among(const RepeatGrid& grid, const VisibilityGrid& visibility_grid,
                                   double beams) {
   std::vector<bool> does_change(grid.cells());
-  for (std::size_t cell = 0; cell < grid.cells(); ++cell) does_change[cell] = visibility_grid.changes(cell);
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    does_change[cell] = visibility_grid.changes(cell) && !visibility_grid.may_be_static(grid.along_row(cell));
+  }
   constexpr std::ptrdiff_t kMaxOfNine = 6;
   ChangingDirections result;
   std::map<std::size_t, std::size_t> place;  // index of a cell among the changing ones
@@ -202,9 +242,9 @@ ChangingDirections changing_directions(const Measurements& beams, const PlateTra
     ahead += 1;
     const double error{association.error[i]};
     if (std::abs(error) < kSeenWithin * usual)
-      visibility_grid.add(grid.cell(*observation), observation->when, Visibility::kSurface);
+      visibility_grid.add(grid.cell(*observation), *observation, Visibility::kSurface);
     if (error < -std::max(kBefore, kFarOff * usual))
-      visibility_grid.add(grid.cell(*observation), observation->when, Visibility::kHidden);
+      visibility_grid.add(grid.cell(*observation), *observation, Visibility::kHidden);
   }
   return changing_among(grid, visibility_grid, ahead);
 }

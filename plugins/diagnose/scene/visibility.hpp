@@ -27,16 +27,18 @@ struct ChangingDirections {
 
 /// Detects directions of changing visibility. At the same plate angle a laser measures along the same lines
 /// as one turn before, so static objects occlude the same. Directions are cells of plate angle (as wide as
-/// the plate turns between two scans) and of two degrees of mirror angle. A direction counts as changing if
-/// five of its eight neighbours change, too: flicker at static edges has narrower strips.
+/// the plate turns between two scans) and of two degrees of mirror angle. Within a column, scans of different
+/// turns have different angles, so that the outline of a static object changes a cell as well. There the
+/// visibility alternates less often from angle to angle than from time to time; such cells do not count. A
+/// direction counts as changing if five of its eight neighbours change, too.
 ///
 /// @param beams  scan by scan of each laser; beams not covered by encoder readings do not count
 /// @param usual  [m] standard deviation of ranges, by usual_error()
 ChangingDirections changing_directions(const Measurements& beams, const PlateTrajectory& plate,
                                        const BeamAssociation& association, double usual);
 
-/// Permutation test: p-value of the number of adjacent directions occluded at the same time, from 999 random
-/// permutations of the times within each direction.
+/// Permutation test against independent flicker: p-value of the number of adjacent directions occluded at the
+/// same time, from 999 random permutations of the times within each direction.
 double p_value(const ChangingDirections& directions, std::uint64_t seed);
 
 /// Tests for moving objects (scene.moving).

@@ -6,8 +6,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string>
@@ -66,6 +68,34 @@ TEST(ScanBlocks, ArePiecesOfTheRecordingForALaserOfFewDirections) {
   EXPECT_GE(of_one.size(), 100U);
   EXPECT_EQ(of_many.size(), 100U);
   EXPECT_GT(*of_many.begin(), *of_one.rbegin());
+}
+
+TEST(QuantizationBlocks, LastUntilThePlateHasTurnedByAStep) {
+  Measurements beams = scans_of({1});  // 20 ms apart
+  const double duration = beams.time.back();
+  std::vector<double> times;
+  std::vector<double> angles;
+  for (double t = -0.1; t < duration + 0.1; t += 0.01) {  // turns, stands, creeps
+    times.push_back(t);
+    angles.push_back(t < duration / 3 ? t : duration / 3 + std::max(0.0, 0.004 * (t - 2 * duration / 3)));
+  }
+  const PlateTrajectory plate(0, times, angles, 1);
+  const Sample sample{.beams = beams, .plate = &plate};
+  EXPECT_EQ(quantization_blocks(sample, 0), recording_blocks(beams));
+  constexpr double kStep = 0.004;
+  const Division blocks = quantization_blocks(sample, kStep);
+  std::map<std::uint32_t, std::set<std::uint32_t>> merged;
+  for (std::size_t i = 0; i < blocks.size(); ++i) merged[blocks[i]].insert(recording_blocks(beams)[i]);
+  std::size_t single = 0;
+  std::size_t longest = 0;
+  for (const auto& [block, pieces] : merged) {
+    single += pieces.size() == 1 ? 1 : 0;
+    longest = std::max(longest, pieces.size());
+  }
+  const std::size_t all = std::ranges::max(recording_blocks(beams)) + std::size_t{1};
+  EXPECT_NEAR(static_cast<double>(single), static_cast<double>(all) / 3, 2);
+  EXPECT_GT(longest, all / 3) << "the standstill is one block";
+  EXPECT_NEAR(static_cast<double>(merged.size() - single), 1 + duration / 3, 2) << "a step a second";
 }
 
 TEST(PlaceBlocks, AreOfPlacesOnSurfacesWhateverTheNoise) {

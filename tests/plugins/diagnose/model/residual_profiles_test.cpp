@@ -19,7 +19,7 @@ using namespace crisp::simulate;
 ProfileComparison given(const test::Recording& recording) {
   const SurfelSettings settings;
   const SurfaceObservations observations(SensorModel(recording.scanner.truth, built_in_terms()),
-                                         recording.sample(), settings, 60000);
+                                         recording.sample(), {.surfels = settings}, 60000);
   return compare_with_simulation(observations, settings, 1);
 }
 
@@ -163,7 +163,7 @@ TEST(ProfileComparison, HasNoBinOverTimeAcrossAPause) {
   const test::Several both = test::several({longer.made, shorter.made});
   const SurfelSettings settings;
   const SurfaceObservations observations(SensorModel(longer.scanner.truth, built_in_terms()), both.sample(),
-                                         settings, 60000);
+                                         {.surfels = settings}, 60000);
   const ProfileComparison left = compare_with_simulation(observations, settings, 1);
   EXPECT_GT(left.p_value, 0.01);
   const auto over_time = std::ranges::find(left.profiles, "time", &Profile::covariate);

@@ -91,8 +91,8 @@ class AssociatedBeams {
                                          double sigma) {
     const SensorModel model(by, built_in_terms());
     const LagRange lag = lag_range(model, 0);
-    SurfelSettings settings;
-    settings.noise = sigma;
+    RefinementSettings settings;
+    settings.surfels.noise = sigma;
     return {model,    covered(recording.sample(), lag.earliest, lag.latest),
             settings, std::numeric_limits<std::size_t>::max(),
             {},       SurfacesOf::kSearch};
@@ -117,7 +117,7 @@ TEST(SurfaceRangeErrors, OfAPlainScannerHaveNoCause) {
     EXPECT_GT(goodness_of_fit("laser1", scatter, noise.model, {}, BeamsOf::kSurfaces, 1).after.p_value, 0.01)
         << scene;
     EXPECT_FALSE(plain.quantization()) << scene << ": the telegram's millimetre does not count";
-    EXPECT_FALSE(mixed_pixels("laser1", plain.crossings(), 1)) << scene;
+    EXPECT_FALSE(mixed_pixels("laser1", plain.crossings())) << scene;
     EXPECT_FALSE(moving(plain.changing(), 1)) << scene;
   }
 }
@@ -290,17 +290,17 @@ TEST(SurfaceRangeErrors, OfQuantizedRangesAreNamedWithTheStep) {
 TEST(SurfaceRangeErrors, OfMixedPixelsAreNamed) {
   const NoiseEffects spot{.divergence = 0.014, .aperture = 0.008};
   for (const char* scene : {"office", "workshop"}) {
-    EXPECT_TRUE(mixed_pixels("laser1", AssociatedBeams(scene, spot).crossings(), 1)) << scene;
+    EXPECT_TRUE(mixed_pixels("laser1", AssociatedBeams(scene, spot).crossings())) << scene;
   }
   EXPECT_LT(AssociatedBeams("workshop", {}).crossings().share(), 0.03) << "cluttered, with narrow spots";
 }
 
 TEST(SurfaceRangeErrors, OfGrazingBeamsAreNotTakenForMixedPixels) {
   // Beyond 60°, where the diagnosis does not measure noise, a spread of 9 mm makes errors of up to 9 cm.
-  EXPECT_FALSE(mixed_pixels("laser1", AssociatedBeams("street", {.spread = 0.009}).crossings(), 1));
+  EXPECT_FALSE(mixed_pixels("laser1", AssociatedBeams("street", {.spread = 0.009}).crossings()));
   EXPECT_TRUE(mixed_pixels(
       "laser1",
-      AssociatedBeams("office", {.spread = 0.009, .divergence = 0.014, .aperture = 0.008}).crossings(), 1))
+      AssociatedBeams("office", {.spread = 0.009, .divergence = 0.014, .aperture = 0.008}).crossings()))
       << "mixed pixels are still detected without grazing incidence";
 }
 
