@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include <crisp/error.hpp>
 
 #include "pipeline/data/degree.hpp"
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/base_parameters.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
 #include "plugins/calibrate/cloud_objective.hpp"
@@ -64,6 +67,17 @@ std::optional<estimate::Refinement> refined(const Outcome& outcome, const estima
   }
 }
 
+/// Whether the refined calibration fits the data, and agrees with the rig.
+bool fits(const std::optional<estimate::Refinement>& fit, const Rig& rig, const ParameterPrior& given) {
+  return fit && fit->outcome.caveats.empty() && (fit->views.empty() || agrees_well(*fit)) &&
+         check_with_rig(estimate::calibration_of(fit->outcome, rig), rig, given).caveats.empty();
+}
+
+std::function<bool()> interruption(const RqeCalibrationSettings& settings) {
+  const auto& interrupted = settings.in_plane.minimizer.interrupted;
+  return interrupted ? interrupted : [] { return false; };
+}
+
 }  // namespace
 
 ParameterPrior search_range_around(const SensorModel& start, const Rig& rig, ParameterPrior range) {
@@ -99,9 +113,7 @@ Outcome search_around_rig(const SensorModel& start, const estimate::Sample& samp
                           RqeCalibrationSettings settings, const Rig& rig, const Reporter& report) {
   constexpr double kMore = 1.2;
   const ParameterPrior given = settings.in_plane.range;
-  const auto interrupted = [&] {
-    return settings.in_plane.minimizer.interrupted && settings.in_plane.minimizer.interrupted();
-  };
+  const auto interrupted = interruption(settings);
   const auto calibrated = [&](const ParameterPrior& range, double from, double share) {
     settings.in_plane.range = range;
     return calibrate_by_rqe(start, sample, measure, settings,
@@ -109,21 +121,17 @@ Outcome search_around_rig(const SensorModel& start, const estimate::Sample& samp
   };
   const ParameterPrior near = search_range_around(start, rig, given);
   const ParameterPrior nearest = search_range_with_lambda(start, rig, given);
-  const auto fits = [&](const std::optional<estimate::Refinement>& fit) {
-    return fit && fit->outcome.caveats.empty() && (fit->views.empty() || agrees_well(*fit)) &&
-           check_with_rig(estimate::calibration_of(fit->outcome, rig), rig, given).caveats.empty();
-  };
   Outcome here = calibrated(near, 0, 0.5);
   const bool ends_here = is_at_limit(here, near);
   const bool moved = has_moved_lambda(here, nearest);
   if (interrupted() || (!ends_here && !moved && estimate::nominal_values(rig).empty())) return here;
   if (moved) {  // in a corridor both ways round fit
     Outcome nearer = calibrated(nearest, 0.5, 0.1);
-    if (interrupted() || fits(refined(nearer, sample, rig, interrupted))) return nearer;
+    if (interrupted() || fits(refined(nearer, sample, rig, interrupted), rig, given)) return nearer;
   }
   report(0.6, "flat surfaces");
   const auto fit = refined(here, sample, rig, interrupted);
-  if (interrupted() || fits(fit)) return here;
+  if (interrupted() || fits(fit, rig, given)) return here;
 
   Outcome anywhere = calibrated(given, 0.7, 0.25);
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
@@ -138,6 +146,27 @@ Outcome search_around_rig(const SensorModel& start, const estimate::Sample& samp
     return refinement ? static_cast<double>(refinement->beams) : 0.0;
   };
   return beams_of(other) > kMore * beams_of(fit) ? std::move(anywhere) : std::move(here);
+}
+
+DirectedOutcome search_in_both_directions(const SensorModel& start, const estimate::Sample& sample,
+                                          Measure& measure, const RqeCalibrationSettings& settings,
+                                          const Rig& rig, const Reporter& report) {
+  const ParameterPrior& given = settings.in_plane.range;
+  const auto interrupted = interruption(settings);
+  const auto searched = [&](const estimate::Sample& beams, double from) {
+    return search_around_rig(start, beams, measure, settings, rig,
+                             [&](double done, std::string_view what) { report(from + 0.5 * done, what); });
+  };
+  DirectedOutcome as_read{.outcome = searched(sample, 0)};
+  const auto fit = refined(as_read.outcome, sample, rig, interrupted);
+  const bool is_mirrored =
+      fit && check_with_rig(estimate::calibration_of(fit->outcome, rig), rig, given).is_mirrored;
+  if (interrupted() || is_mirrored || fits(fit, rig, given)) return as_read;
+  const PlateTrajectory plate = data::reversed(*sample.plate);
+  const estimate::Sample turned{.beams = sample.beams, .plate = &plate};
+  DirectedOutcome reversed{.outcome = searched(turned, 0.5), .direction = CountDirection::clockwise};
+  const auto other = refined(reversed.outcome, turned, rig, interrupted);
+  return !interrupted() && fits(other, rig, given) ? std::move(reversed) : std::move(as_read);
 }
 
 }  // namespace crisp::calibrate

@@ -34,4 +34,17 @@ estimate::Outcome search_around_rig(const SensorModel& start, const estimate::Sa
                                     Measure& measure, RqeCalibrationSettings settings, const Rig& rig,
                                     const Reporter& report);
 
+/// An outcome with the direction in which the encoder's readings were counted.
+struct DirectedOutcome {
+  estimate::Outcome outcome;
+  CountDirection direction = CountDirection::counter_clockwise;
+};
+
+/// The same for a rig with `direction: auto`. A clockwise encoder gives the mirror image, unless the search
+/// range holds only a local minimum of it. If the outcome neither fits nor is a mirror image, the search is
+/// repeated with the readings reversed, which counts if the outcome then fits.
+DirectedOutcome search_in_both_directions(const SensorModel& start, const estimate::Sample& sample,
+                                          Measure& measure, const RqeCalibrationSettings& settings,
+                                          const Rig& rig, const Reporter& report);
+
 }  // namespace crisp::calibrate

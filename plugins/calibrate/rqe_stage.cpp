@@ -144,7 +144,7 @@ Calibration RqeStage::compared_with_rig(Calibration calibration, Context& contex
 }
 
 void RqeStage::finish(Outputs& out, Context& context) {
-  const estimate::Sample sample = estimate::longest_recording(collected_.sample());
+  estimate::Sample sample = estimate::longest_recording(collected_.sample());
   context.count("beams left out of the calibration of a long recording", collected_.left_out());
   RqeCalibrationSettings settings = settings_;
   settings.sigma_from = sigma_[0];
@@ -158,14 +158,25 @@ void RqeStage::finish(Outputs& out, Context& context) {
   const auto& terms = context.run().registrar->get<TermRegistry>();
   const Calibration start = start_ ? *start_ : nominal_calibration(context.rig());
   refuse_single_beams(sample.beams, start, settings_.fixed);
-  const estimate::Outcome outcome =
-      search_around_rig(SensorModel(start, terms), sample, *measure, settings, context.rig(),
-                        [&](double done, std::string_view what) { context.progress(done, what); });
+  const bool finds_direction = context.rig().plate.direction == CountDirection::automatic && !start_;
+  const auto search = [&](const auto& by) {
+    return by(SensorModel(start, terms), sample, *measure, settings, context.rig(),
+              [&](double done, std::string_view what) { context.progress(done, what); });
+  };
+  const auto [outcome, direction] = finds_direction ? search(search_in_both_directions)
+                                                    : DirectedOutcome{.outcome = search(search_around_rig)};
   if (context.interrupted()) return;
+  const bool is_reversed = direction == CountDirection::clockwise;
+  const PlateTrajectory reversed = is_reversed ? data::reversed(*sample.plate) : PlateTrajectory();
+  if (is_reversed) {
+    context.warn(kCountsClockwise);
+    sample.plate = &reversed;
+  }
 
   for (const auto& caveat : outcome.caveats) context.mark_untrusted(caveat);
   for (const auto& minimum : outcome.other_minima) context.mark_untrusted(minimum);
   Calibration calibration = estimate::calibration_of(outcome, context.rig());
+  if (is_reversed) calibration.direction = direction;
   calibration.caveats = outcome.caveats;  // of the data: no refinement answers them
   const double sigma = settings.full_field ? settings.sigma_to : settings.in_plane.sigma_to;
   const auto rqe = rqe_of({outcome.model, SensorModel(start, terms)}, sample,

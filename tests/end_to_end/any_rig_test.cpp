@@ -73,6 +73,11 @@ TEST_F(AnyRig, ALagAtWhichLinesFitByChanceIsNotTaken) {
 
 TEST_F(AnyRig, DelaysThatThinOutTowardsTheLeastLeaveEtaHonest) { is_right_and_trusted(25, {}); }
 
+TEST_F(AnyRig, AClockwiseEncoderIsFoundWhereTheSearchMissesTheMirrorImage) {
+  is_right_and_trusted(7210,
+                       {"fault=none", "duration=10", "has_effect=1", "has_mixed_pixels=0", "effect=none"});
+}
+
 TEST_F(AnyRig, ADirectionThatNothingShowsIsNotGuessed) {
   is_untrusted_with(11, {}, "the encoder's sense of rotation is undetermined");
 }
