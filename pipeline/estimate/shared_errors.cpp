@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -74,17 +75,17 @@ Division recording_blocks(const Measurements& beams) {
 }
 
 Division quantization_blocks(const Sample& sample, double step) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   Division blocks = recording_blocks(sample.beams);
-  // A laser's beams follow in order of time, and lasers one after another: the earliest beam of each block.
-  std::map<std::uint32_t, double> begin;
+  std::vector<double> begins;  // [s] of the blocks
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto [of_block, is_new] = begin.try_emplace(blocks[i], sample.beams.time[i]);
-    if (!is_new) of_block->second = std::min(of_block->second, sample.beams.time[i]);
+    if (blocks[i] >= begins.size()) begins.resize(blocks[i] + std::size_t{1}, kNever);
+    begins[blocks[i]] = std::min(begins[blocks[i]], sample.beams.time[i]);
   }
   std::vector<std::uint32_t> merged;
   std::optional<PlateState> first;  // of the merged block
-  for (const auto& [block, time] : begin) {
-    const auto state = sample.plate->at(time);
+  for (const double begin : begins) {
+    const auto state = sample.plate->at(begin);
     const bool stands = first && state && std::abs(state->angle - first->angle) < step;
     if (!stands) first = state;
     merged.push_back(merged.empty() ? 0 : merged.back() + (stands ? 0 : 1));

@@ -52,10 +52,11 @@ std::vector<Unobservable> SurfelRefiner::hold_unobservable() {
 
 void SurfelRefiner::widen_by_shared_errors() {
   if (found_.surfels.empty()) return;
+  constexpr double kNoStep = 0;  // widening_by_quantization() accounts for the encoder's steps
   const PlacedBeams placed(model_, sample_);
-  const auto equations = quality::normal_equations(found_, placed.view(noise_), free_.size(),
-                                                   surfel_rows(model_, sample_, free_), settings_.surfels,
-                                                   shared_errors(sample_, found_, placed.view(noise_), 0));
+  const auto equations = quality::normal_equations(
+      found_, placed.view(noise_), free_.size(), surfel_rows(model_, sample_, free_), settings_.surfels,
+      shared_errors(sample_, found_, placed.view(noise_), kNoStep));
   const Eigen::VectorXd of_prior =
       covariance_.diagonal().cwiseQuotient(ranges_of(settings_.prior, model_, free_).cwiseAbs2());
   covariance_ = widened(covariance_, widening_with_prior(widening(equations), of_prior));

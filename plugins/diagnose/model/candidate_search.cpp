@@ -17,7 +17,7 @@ std::vector<std::size_t> base_of(const estimate::Refinement& refinement) {
   for (const std::size_t parameter : refinement.outcome.free) {
     if (!estimate::declared(refinement.outcome.model, parameter)) base.push_back(parameter);
   }
-  // Held at a value that may be wrong: what an error of theirs does to the residuals is no effect.
+  // Held parameters may have errors, which no candidate may explain.
   for (const Unobservable& held : refinement.outcome.unobservable) {
     const std::size_t parameter = refinement.outcome.model.index(held.parameter);
     if (!estimate::declared(refinement.outcome.model, parameter)) base.push_back(parameter);

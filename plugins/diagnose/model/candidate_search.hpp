@@ -35,7 +35,8 @@ struct Limit {
   std::string combination;  ///< identifiable combination instead: see known_instead()
 };
 
-/// Indices of the base parameters (λ, τ, α, η) that a refinement estimated.
+/// Indices of the base parameters (λ, τ, α, η) that a refinement estimated, or held since they are
+/// unobservable.
 std::vector<std::size_t> base_of(const estimate::Refinement& refinement);
 
 /// Score tests of all candidates at one model (Rao's score test on the linearized problem).

@@ -75,7 +75,7 @@ struct MixedShare {
 };
 
 /// Estimates the share with the standard error of a cluster sample, at least that of independent crossings.
-/// The clusters are the edges: all scans that cross an edge have the same surfaces beside it, such as the
+/// The clusters are the edges: all scans that cross an edge meet the same surfaces there, such as the
 /// narrow side of a box. The degrees of freedom are one less than the effective number of edges (Kish).
 MixedShare mixed_share(std::span<const Edge> edges);
 

@@ -81,18 +81,19 @@ TEST(QuantizationBlocks, LastUntilThePlateHasTurnedByAStep) {
   }
   const PlateTrajectory plate(0, times, angles, 1);
   const Sample sample{.beams = beams, .plate = &plate};
-  EXPECT_EQ(quantization_blocks(sample, 0), recording_blocks(beams));
+  const Division pieces_of_beams = recording_blocks(beams);
+  EXPECT_EQ(quantization_blocks(sample, 0), pieces_of_beams);
   constexpr double kStep = 0.004;
   const Division blocks = quantization_blocks(sample, kStep);
   std::map<std::uint32_t, std::set<std::uint32_t>> merged;
-  for (std::size_t i = 0; i < blocks.size(); ++i) merged[blocks[i]].insert(recording_blocks(beams)[i]);
+  for (std::size_t i = 0; i < blocks.size(); ++i) merged[blocks[i]].insert(pieces_of_beams[i]);
   std::size_t single = 0;
   std::size_t longest = 0;
   for (const auto& [block, pieces] : merged) {
     single += pieces.size() == 1 ? 1 : 0;
     longest = std::max(longest, pieces.size());
   }
-  const std::size_t all = std::ranges::max(recording_blocks(beams)) + std::size_t{1};
+  const std::size_t all = std::ranges::max(pieces_of_beams) + std::size_t{1};
   EXPECT_NEAR(static_cast<double>(single), static_cast<double>(all) / 3, 2);
   EXPECT_GT(longest, all / 3) << "the standstill is one block";
   EXPECT_NEAR(static_cast<double>(merged.size() - single), 1 + duration / 3, 2) << "a step a second";
