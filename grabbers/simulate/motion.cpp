@@ -20,7 +20,23 @@ constexpr double kTurn = 2 * std::numbers::pi;
 /// Integral of the smooth step u²(3 − 2u) from 0 to u.
 double smooth_step_integral(double u) { return u * u * u * (1 - u / 2); }
 
+/// Inverse of the smooth step: u with u²(3 − 2u) = rise, for a rise from 0 to 1.
+double smooth_step_inverse(double rise) { return 0.5 - std::sin(std::asin(1 - 2 * rise) / 3); }
+
 using Knots = std::vector<Motion::Knot>;
+
+/// Sign of the first rate that is not 0.
+double first_direction(const Knots& knots) {
+  const auto turning = std::ranges::find_if(knots, [](const Motion::Knot& knot) { return knot.rate != 0; });
+  return turning == knots.end() ? 0 : std::copysign(1.0, turning->rate);
+}
+
+/// Lets the play follow to a state of the plate, and gives the state its direction.
+PlateState followed(data::Play& play, PlateState state) {
+  state.direction = play.follow(state.angle);
+  if (std::abs(state.direction) < 1) state.direction_rate = state.rate / data::Play::kHalf;
+  return state;
+}
 
 Knots varying(const MotionSettings& settings, double duration, statistics::RandomStream& random) {
   Knots knots;
@@ -70,6 +86,7 @@ Motion::Motion(std::vector<Knot> knots, double first_angle) : knots_(std::move(k
   if (knots_.empty())
     throw Error("the motion of the plate has no knot", "give one time and one rate at least");
   angles_.push_back(first_angle);
+  plays_.emplace_back(first_angle, first_direction(knots_));
   for (std::size_t i = 1; i < knots_.size(); ++i) {
     const double width = knots_[i].time - knots_[i - 1].time;
     if (!(width > 0)) {
@@ -78,25 +95,50 @@ Motion::Motion(std::vector<Knot> knots, double first_angle) : knots_(std::move(k
           "give its knots in ascending order of time");
     }
     angles_.push_back(angles_.back() + width * (knots_[i].rate + knots_[i - 1].rate) / 2);
+    plays_.push_back(play_after(i - 1, knots_[i].time));
+    plays_.back().follow(angles_.back());
   }
 }
 
 std::optional<PlateState> Motion::at(double t) const {
   const auto next = std::upper_bound(knots_.begin(), knots_.end(), t,
                                      [](double time, const Knot& k) { return time < k.time; });
-  if (next == knots_.begin() || next == knots_.end()) {
-    const std::size_t end = next == knots_.begin() ? 0 : knots_.size() - 1;
-    return PlateState{.angle = angles_[end] + knots_[end].rate * (t - knots_[end].time),
-                      .rate = knots_[end].rate};
+  if (next == knots_.begin()) {
+    const Knot& first = knots_.front();
+    return PlateState{.angle = angles_.front() + first.rate * (t - first.time),
+                      .rate = first.rate,
+                      .direction = data::Play(plays_.front()).follow(angles_.front())};
   }
-  const Knot& from = *std::prev(next);
-  const double width = next->time - from.time;
-  const double u = (t - from.time) / width;
-  const double change = next->rate - from.rate;
-  const double angle = angles_[static_cast<std::size_t>(std::prev(next) - knots_.begin())];
-  return PlateState{.angle = angle + width * (from.rate * u + change * smooth_step_integral(u)),
-                    .rate = from.rate + change * u * u * (3 - 2 * u),
-                    .acceleration = change * 6 * u * (1 - u) / width};
+  if (next == knots_.end()) {
+    const Knot& last = knots_.back();
+    data::Play play = plays_.back();
+    return followed(play, {.angle = angles_.back() + last.rate * (t - last.time), .rate = last.rate});
+  }
+  const auto from = static_cast<std::size_t>(std::prev(next) - knots_.begin());
+  data::Play play = play_after(from, t);
+  return followed(play, between(from, t));
+}
+
+/// The plate between a knot and the next one, without its direction.
+PlateState Motion::between(std::size_t from, double t) const {
+  const auto& [time, rate] = knots_[from];
+  const double width = knots_[from + 1].time - time;
+  const double u = (t - time) / width;
+  const double change = knots_[from + 1].rate - rate;
+  return {.angle = angles_[from] + width * (rate * u + change * smooth_step_integral(u)),
+          .rate = rate + change * u * u * (3 - 2 * u),
+          .acceleration = change * 6 * u * (1 - u) / width};
+}
+
+/// The play of the last monotone motion before time t, between a knot and the next one.
+data::Play Motion::play_after(std::size_t from, double t) const {
+  data::Play play = plays_[from];
+  const auto& [time, rate] = knots_[from];
+  const Knot& next = knots_[from + 1];
+  if (rate * next.rate >= 0) return play;
+  const double reversal = time + (next.time - time) * smooth_step_inverse(rate / (rate - next.rate));
+  if (t > reversal) play.follow(between(from, reversal).angle);
+  return play;
 }
 
 Motion make_motion(const MotionSettings& settings, double duration, std::uint64_t seed) {

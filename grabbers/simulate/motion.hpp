@@ -7,6 +7,8 @@
 
 #include <crisp/plate_trajectory.hpp>
 
+#include "pipeline/data/play.hpp"
+
 namespace crisp::simulate {
 
 /// Motion of the plate.
@@ -43,8 +45,12 @@ class Motion {
   std::optional<PlateState> at(double t) const;
 
  private:
+  PlateState between(std::size_t from, double t) const;
+  data::Play play_after(std::size_t from, double t) const;
+
   std::vector<Knot> knots_;
-  std::vector<double> angles_;  ///< [rad] φ at each knot
+  std::vector<double> angles_;     ///< [rad] φ at each knot
+  std::vector<data::Play> plays_;  ///< at each knot
 };
 
 /// Draws a motion that covers [0, duration] seconds. The first angle is drawn too, in a revolution.

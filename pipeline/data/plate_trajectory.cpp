@@ -9,6 +9,8 @@
 #include <crisp/error.hpp>
 #include <crisp/plate_trajectory.hpp>
 
+#include "pipeline/data/play.hpp"
+
 namespace crisp {
 namespace {
 
@@ -31,6 +33,29 @@ std::vector<double> slopes(std::span<const double> t, std::span<const double> y)
   return slope;
 }
 
+/// Sign of the first motion by more than the noise of readings, as if the plate had turned so before, too.
+double first_direction(std::span<const double> angles) {
+  const auto turned = std::ranges::find_if(
+      angles, [&](double angle) { return std::abs(angle - angles.front()) > data::kReversalTravel; });
+  return turned == angles.end() ? 0 : std::copysign(1.0, *turned - angles.front());
+}
+
+/// PlateState::direction at each reading. Starts anew after a silence longer than `max_gap`.
+std::vector<double> turning_directions(std::span<const double> times, std::span<const double> angles,
+                                       double max_gap) {
+  std::vector<double> directions;
+  directions.reserve(angles.size());
+  while (directions.size() < angles.size()) {
+    const std::size_t begin = directions.size();
+    std::size_t end = begin + 1;
+    while (end < angles.size() && times[end] - times[end - 1] <= max_gap) ++end;
+    const auto part = angles.subspan(begin, end - begin);
+    data::Play play(part.front(), first_direction(part));
+    for (const double angle : part) directions.push_back(play.follow(angle));
+  }
+  return directions;
+}
+
 }  // namespace
 
 PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> times, std::vector<double> angles,
@@ -50,6 +75,7 @@ PlateTrajectory::PlateTrajectory(std::int64_t epoch_ns, std::vector<double> time
                 "give readings in ascending order of time, without repetition");
   }
   rates_ = slopes(times_, angles_);
+  directions_ = turning_directions(times_, angles_, max_gap_);
   if (times_.size() < 2) return;
   const std::size_t intervals = times_.size() - 1;
   first_.assign(intervals + 1, 0);
@@ -64,7 +90,9 @@ PlateState PlateArc::at(double t) const {
   const auto& c = coefficients;
   return {.angle = c[0] + u * (c[1] + u * (c[2] + u * c[3])),
           .rate = (c[1] + u * (2 * c[2] + u * 3 * c[3])) / width,
-          .acceleration = (2 * c[2] + u * 6 * c[3]) / (width * width)};
+          .acceleration = (2 * c[2] + u * 6 * c[3]) / (width * width),
+          .direction = directions[0] + u * (directions[1] - directions[0]),
+          .direction_rate = (directions[1] - directions[0]) / width};
 }
 
 PlateTrajectory PlateTrajectory::with_angles(std::vector<double> angles) const {
@@ -81,7 +109,8 @@ std::optional<PlateArc> PlateTrajectory::arc(double t) const {
   return PlateArc{.begin = times_[*found],
                   .end = times_[*found + 1],
                   .width = width,
-                  .coefficients = {angles_[*found], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise}};
+                  .coefficients = {angles_[*found], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise},
+                  .directions = {directions_[*found], directions_[*found + 1]}};
 }
 
 std::optional<PlateState> PlateTrajectory::at(double t) const {

@@ -81,6 +81,7 @@ template <class T, PlateMotion Plate, class Visit = VisitsNothing>
     const T since = beam.time - t;  // zero but for its derivatives
     beam.encoder_angle = plate_then.angle + plate_then.rate * since;
     beam.plate_rate = plate_then.rate + plate_then.acceleration * since;
+    beam.plate_direction = plate_then.direction + plate_then.direction_rate * since;
     beam.plate_angle = beam.encoder_angle;
   }
   end(Phase::kPlate);

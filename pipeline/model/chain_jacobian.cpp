@@ -54,6 +54,7 @@ Beam<Jet> as_jets(const Beam<double>& beam) {
   jets.time = Jet(beam.time);
   jets.encoder_angle = Jet(beam.encoder_angle);
   jets.plate_rate = Jet(beam.plate_rate);
+  jets.plate_direction = Jet(beam.plate_direction);
   jets.plate_angle = Jet(beam.plate_angle);
   jets.mirror_angle = Jet(beam.mirror_angle);
   jets.origin = beam.origin.cast<Jet>();

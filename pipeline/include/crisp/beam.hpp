@@ -43,6 +43,7 @@ struct Beam {
   T time{};                                   ///< [s since the run's epoch] hub_time + η
   T encoder_angle{};                          ///< [rad] φ at `time` as the encoder reads it
   T plate_rate{};                             ///< [rad/s] its derivative
+  T plate_direction{};                        ///< PlateState::direction at `time`
   T plate_angle{};                            ///< [rad] φ at `time`
   T mirror_angle{};                           ///< [rad] θ
   Vector3<T> origin = Vector3<T>::Zero();     ///< [m]

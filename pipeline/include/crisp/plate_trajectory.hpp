@@ -20,6 +20,10 @@ struct PlateState {
   double angle = 0;         ///< [rad] φ, unwrapped
   double rate = 0;          ///< [rad/s] dφ/dt
   double acceleration = 0;  ///< [rad/s²]
+  /// In which direction it has turned last: −1 clockwise, 1 counter-clockwise, seen from +z. Kept at
+  /// standstill, and between both for 0.01 rad after a reversal; 0 where it never turned.
+  double direction = 0;
+  double direction_rate = 0;  ///< [1/s] d direction/dt
 };
 
 /// φ(t) between two neighbouring readings of the encoder: a cubic of u = (t − begin) / width.
@@ -28,6 +32,7 @@ struct PlateArc {
   double end = 0;                        ///< [s since epoch] of the second
   double width = 0;                      ///< [s] end − begin
   std::array<double, 4> coefficients{};  ///< [rad] of 1, u, u², u³
+  std::array<double, 2> directions{};    ///< at the first reading and at the second, linear between them
 
   /// The plate at time t [s since epoch], from `begin` to `end`.
   PlateState at(double t) const;
@@ -82,6 +87,7 @@ class PlateTrajectory {
   std::vector<double> times_;
   std::vector<double> angles_;
   std::vector<double> rates_;
+  std::vector<double> directions_;
   std::vector<double> new_zeros_;
   double max_gap_ = 0;
   // Number of parts of equal length per second: as many parts as intervals. For about even readings, one to a

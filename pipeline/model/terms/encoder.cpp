@@ -56,9 +56,7 @@ struct EncoderSecondHarmonic final : DifferentiableTerm<EncoderSecondHarmonic> {
   }
 };
 
-/// The plate trails or leads its encoder by the play between them. A sign of the rate would toss about where
-/// the rate is noise around zero, and has no derivative: a hyperbolic tangent is 0 there, and the sign to
-/// 0.5 % from 0.15 rad/s (1.4 turns a minute) on.
+/// The plate trails or leads its encoder by the play between them, on the side of its last motion.
 struct EncoderBacklash final : DifferentiableTerm<EncoderBacklash> {
   const TermInfo& info() const override {
     static const TermInfo kInfo{
@@ -72,15 +70,13 @@ struct EncoderBacklash final : DifferentiableTerm<EncoderBacklash> {
                         .upper = 0.1,
                         .summary = "half the backlash: lead of the plate over the encoder"}},
         .details =
-            "`φ + δ tanh(ω / 0.05 rad/s)`, which is `φ + δ sign(ω)` except near standstill. Typically 0.1°. Without a reversal it is a common λ.",
+            "`φ + δ s`, where `s` is the direction in which the plate has turned last: 1 counter-clockwise, −1 clockwise, kept at standstill, and changing in proportion to the angle over the first 0.01 rad (0.6°) after a reversal. Typically 0.1°. Without a reversal it is a common λ.",
         .resolvable_by = "both directions of turning, at three rates or more"};
     return kInfo;
   }
   template <class T>
   void change(Beam<T>& beam, std::span<const T> p) const {
-    using std::tanh;
-    constexpr double kSlow = 0.05;  // [rad/s]
-    beam.plate_angle += p[0] * tanh(beam.plate_rate / kSlow);
+    beam.plate_angle += p[0] * beam.plate_direction;
   }
 };
 

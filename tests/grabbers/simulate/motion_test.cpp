@@ -27,14 +27,33 @@ TEST(Motion, FollowsAHandWorkedRamp) {
   EXPECT_NEAR(motion.at(-3)->angle, 1, 1e-15) << "came at the first rate";
 }
 
+TEST(Motion, KeepsItsDirectionAtStandstillAndReversesOverACentesimalRadian) {
+  // Forth at 1 rad/s to 3 s, still for a second, and back from 5 s on: from 6 s at −1 rad/s.
+  const Motion motion({{2, 1}, {3, 0}, {4, 0}, {5, 0}, {6, -1}, {7, -1}, {8, 1}});
+  EXPECT_EQ(motion.at(1)->direction, 1);
+  EXPECT_EQ(motion.at(3.5)->direction, 1);
+  EXPECT_EQ(motion.at(3.5)->direction_rate, 0);
+  double reversed = 5;
+  while (motion.at(5)->angle - motion.at(reversed)->angle < 0.005) reversed += 1e-5;
+  EXPECT_NEAR(motion.at(reversed)->direction, 0, 1e-3) << "after half the travel of a reversal";
+  EXPECT_EQ(motion.at(6.5)->direction, -1);
+  EXPECT_NEAR(motion.at(7.5)->direction, -1, 1e-12) << "stands: the turning point between both rates";
+  EXPECT_EQ(motion.at(8)->direction, 1);
+  EXPECT_EQ(motion.at(9)->direction, 1);
+}
+
 class AnyMotion : public testing::TestWithParam<MotionKind> {};
 
-TEST_P(AnyMotion, HasARateThatIsTheSlopeOfItsAngle) {
+TEST_P(AnyMotion, HasRatesThatAreTheSlopesOfItsAngleAndDirection) {
   const Motion motion = make_motion({.kind = GetParam()}, 10, 3);
   constexpr double kStep = 1e-4;
   for (double t = -0.5; t < 10.5; t += 0.0137) {
     const double slope = (motion.at(t + kStep)->angle - motion.at(t - kStep)->angle) / (2 * kStep);
     EXPECT_NEAR(slope, motion.at(t)->rate, 1e-4) << t;  // third derivatives: 2 turns a second in 0.7 s
+    const double change = motion.at(t + kStep)->direction - motion.at(t - kStep)->direction;
+    if (std::abs(motion.at(t + kStep)->direction) < 1 && std::abs(motion.at(t - kStep)->direction) < 1) {
+      EXPECT_NEAR(change / (2 * kStep), motion.at(t)->direction_rate, 0.1) << t;
+    }
   }
 }
 

@@ -80,6 +80,29 @@ TEST(PlateTrajectory, FindsTheIntervalOfATimeAmongReadingsThatCrowd) {
   expect_intervals_as_by_looking(times, 0.02);
 }
 
+TEST(PlateTrajectory, KeepsItsDirectionAtStandstillAndReversesOverACentesimalRadian) {
+  // Forth, still but for the noise of a count, back; and after a silence forth again, from another angle.
+  const PlateTrajectory plate(0, {0, 1, 2, 3, 4, 5, 6, 7, 17, 18, 19},
+                              {0, 0.5, 1, 0.999, 1, 0.995, 0.99, 0, 9, 9.001, 9.1}, 2);
+  const auto direction = [&](double t) { return plate.at(t)->direction; };
+  EXPECT_NEAR(direction(0), 1, 1e-12) << "as it turns first";
+  EXPECT_NEAR(direction(2), 1, 1e-12);
+  EXPECT_NEAR(direction(3), 0.8, 1e-9);
+  EXPECT_NEAR(direction(4), 1, 1e-9);
+  EXPECT_NEAR(direction(5), 0, 1e-9) << "half of the travel of a reversal";
+  EXPECT_NEAR(direction(5.5), -0.5, 1e-9);
+  EXPECT_NEAR(plate.at(5.5)->direction_rate, -1, 1e-9);
+  EXPECT_NEAR(direction(6.9), -1, 1e-9);
+  EXPECT_NEAR(direction(17), 1, 1e-9) << "of another recording";
+  EXPECT_NEAR(direction(19), 1, 1e-9);
+}
+
+TEST(PlateTrajectory, HasNoDirectionWhereThePlateNeverTurns) {
+  const PlateTrajectory plate(0, {0, 1, 2}, {1, 1.002, 1}, 2);
+  EXPECT_NEAR(plate.at(0)->direction, 0, 1e-12);
+  EXPECT_LT(std::abs(plate.at(1)->direction), 0.5);
+}
+
 TEST(PlateTrajectory, RefusesTimesThatDoNotAscend) {
   EXPECT_THROW(PlateTrajectory(0, {0, 1, 1}, {0, 1, 2}, 1), Error);
   EXPECT_THROW(PlateTrajectory(0, {0, 1}, {0}, 1), Error);

@@ -92,7 +92,7 @@ TEST(EncoderTerms, BacklashChangesItsSignWithTheDirection) {
                               turning_plate(0.5, rate));
     return std::atan2(x.y(), x.x()) - 0.5;
   };
-  EXPECT_NEAR(azimuth(0.15), 2 * kMrad, 0.005 * 2 * kMrad);
+  EXPECT_NEAR(azimuth(0.15), 2 * kMrad, 1e-9);
   EXPECT_NEAR(azimuth(-1), -2 * kMrad, 1e-9);
   EXPECT_NEAR(azimuth(0), 0, 1e-12);
 }
