@@ -104,11 +104,12 @@ endfunction()
 
 # crisp_test(<name> [THREADS] [REPEATS <filter>] [SLOW <filter>] [SMOKE <filter>] [LONG <filter>] [CLUSTER <filter>]
 #            [PROGRAMS <definition>=<target> ...] SOURCES ... LIBRARIES ...)
-# makes one GoogleTest program of a folder's tests, with the paths of PROGRAMS (or plugins) as definitions. Filters are GoogleTest's. Its quick tests are one test of CTest's,
-# by the program's name; those that a filter calls slow, smoke (slow, but run by `./check`: one of each kind), long or
-# cluster (slow, and in need of a scheduler's packages) are one each, with that label. Only the release build runs
-# those, and of the quick ones REPEATS: with a sanitizer they take long, and other tests run the same code. With
-# THREADS the thread sanitizer runs the quick tests, too (target threaded_tests, label threads).
+# makes one GoogleTest program of a folder's tests, with the paths of PROGRAMS (or plugins) as definitions. Filters
+# are GoogleTest's. Its quick tests are one test of CTest's, by the program's name; those that a filter calls slow,
+# smoke (slow, but run by `./check`: one of each kind), long or cluster (slow, and in need of a scheduler's packages)
+# are one each, with that label. Only the release build runs those, and of the quick ones REPEATS: with a sanitizer
+# they take long, and other tests run the same code. With THREADS the thread sanitizer runs the quick tests, too
+# (target threaded_tests, label threads).
 function(crisp_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "REPEATS;SLOW;SMOKE;LONG;CLUSTER" "PROGRAMS;SOURCES;LIBRARIES")
   set(only_slow FALSE)

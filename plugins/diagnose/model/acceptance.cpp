@@ -2,6 +2,7 @@
 #include "plugins/diagnose/model/acceptance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -77,7 +78,10 @@ void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, 
     if (explains_the_rest(with, small, fits.compare(with.after).p_value, smallest))
       diagnosis = std::move(with);
   }
-  mark_clock_lines(diagnosis.hypotheses, diagnosis.after.outcome, settings.skew_errors, middle);
+  const double of_one_parameter =
+      std::log(static_cast<double>(std::max<std::size_t>(1, diagnosis.after.beams)));
+  mark_clock_lines(diagnosis.hypotheses, diagnosis.after.outcome, settings.skew_errors, middle,
+                   settings.selection.bic + of_one_parameter);
 }
 
 }  // namespace crisp::diagnose

@@ -46,12 +46,12 @@ std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, Cloc
 }
 
 void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
-                      const std::vector<double>& skew_errors, double middle) {
+                      const std::vector<double>& skew_errors, double middle, double least_chi2) {
   for (Hypothesis& one : hypotheses) {
     const auto drift = one.accepted ? drift_of(one, outcome) : std::nullopt;
     if (!drift || one.candidate.owner >= skew_errors.size()) continue;
     const double mean = drift->skew.value + drift->growth.value * middle;
-    const bool is_constant = std::abs(drift->growth.value) < kLineErrors * drift->growth.std_error;
+    const bool is_constant = std::pow(drift->growth.value / drift->growth.std_error, 2) < least_chi2;
     const double error = std::hypot(drift->skew.std_error, skew_errors[one.candidate.owner]);
     one.is_clock_line = is_constant && std::abs(mean) < kLineErrors * error;
   }

@@ -20,11 +20,13 @@ namespace crisp::diagnose {
 std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, ClockMap>& clocks);
 
 /// Marks accepted drifts of a laser's clock as errors of its clock line: the mean skew is within three of its
-/// standard errors, and the skew does not change. Such a drift corrects the line, and is no cause.
+/// standard errors, and the skew's change alone is too small to be selected as a cause. Such a drift corrects
+/// the line, and is no cause.
 ///
-/// @param middle  [s since the run's epoch] of the recording
+/// @param middle      [s since the run's epoch] of the recording
+/// @param least_chi2  χ² from which on one parameter is selected
 void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
-                      const std::vector<double>& skew_errors, double middle);
+                      const std::vector<double>& skew_errors, double middle, double least_chi2);
 
 /// The skews by which the lines of the clocks were corrected.
 std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypotheses,
