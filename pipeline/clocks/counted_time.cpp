@@ -15,6 +15,7 @@ constexpr std::size_t kMany = 128;    // intervals for a sure estimate: sixteen 
 constexpr std::size_t kSure = 4;      // even intervals after a jump
 constexpr double kMinJump = 0.25e-3;  // [s] real mirrors' stamps are up to 0.17 ms off their prediction
 constexpr double kManyTimes = 12;     // what intervals differ by (median)
+constexpr double kOfSecond = 7;       // times the second largest difference of the latest intervals
 
 }  // namespace
 
@@ -56,7 +57,7 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   std::vector<double> values = latest_;
   const double usual = statistics::median_in_place(values);
   const double excess = seconds - n * usual;
-  if (std::abs(excess) < n * std::max(kMinJump, kManyTimes * usual_deviation(usual))) return std::nullopt;
+  if (std::abs(excess) < n * std::max(kMinJump, largest_by_chance(usual))) return std::nullopt;
   // Where receipts confirm the device's clock, the interval was real: nothing was sent for a while, and not
   // counted either, or the counted events are uneven.
   constexpr double kAgree = 0.25;
@@ -68,12 +69,20 @@ std::optional<double> CountedTime::excess(double seconds, std::int64_t steps, do
   return excess;
 }
 
-/// [s] The median deviation of the latest intervals, or of many, whichever is larger.
-double CountedTime::usual_deviation(double usual) const {
+/// [s] By the median deviation of the latest intervals, or of many, whichever is larger. As long as these are
+/// few, their median may be small by chance, and the second largest counts, too: the largest may be a
+/// silence.
+double CountedTime::largest_by_chance(double usual) const {
   std::vector<double> latest = latest_;
   for (double& value : latest) value = std::abs(value - usual);
   std::vector<double> many = spread_;
-  return std::max(statistics::median_in_place(latest), many.empty() ? 0 : statistics::median_in_place(many));
+  double second = 0;
+  if (many.size() < kMany / 2) {
+    std::ranges::nth_element(latest, latest.end() - 2);
+    second = *(latest.end() - 2);
+  }
+  const double of_many = many.empty() ? 0 : statistics::median_in_place(many);
+  return std::max(kManyTimes * std::max(statistics::median_in_place(latest), of_many), kOfSecond * second);
 }
 
 void CountedTime::remember(double step) {

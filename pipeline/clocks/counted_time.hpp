@@ -38,7 +38,7 @@ class CountedTime {
   };
   std::optional<double> excess(double seconds, std::int64_t steps, double hub) const;
   void remember(double step);
-  double usual_deviation(double usual) const;
+  double largest_by_chance(double usual) const;
   void judge_trial(std::optional<double> jump);
 
   std::vector<double> latest_;   // [s] a step, of the latest intervals
