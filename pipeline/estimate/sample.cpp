@@ -105,6 +105,14 @@ Sample covered(const Sample& sample, double earliest, double latest) {
   });
 }
 
+Sample placeable(const SensorModel& model, const Sample& sample) {
+  std::vector<char> is_placed(sample.beams.size(), 0);
+  model.place(sample.beams, *sample.plate, [&](const PlacedRun& run) {
+    std::fill_n(is_placed.begin() + static_cast<std::ptrdiff_t>(run.first), run.x.size(), 1);
+  });
+  return select(sample, [&](std::size_t i) { return is_placed[i] != 0; });
+}
+
 double turned(const Sample& sample) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;

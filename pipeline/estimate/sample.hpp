@@ -37,6 +37,10 @@ Sample of_laser(const Sample& sample, std::size_t laser);
 /// vary η while the set of points stays the same.
 Sample covered(const Sample& sample, double earliest, double latest);
 
+/// The beams whose plate angle is known at the times that a model gives them: terms of time move them beyond
+/// η.
+Sample placeable(const SensorModel& model, const Sample& sample);
+
 /// [rad] Between the least and the greatest angle that the plate had while beams were fired.
 double turned(const Sample& sample);
 

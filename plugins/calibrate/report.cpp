@@ -56,8 +56,9 @@ std::vector<double> rqe_of(const std::vector<SensorModel>& models, const estimat
     const estimate::LagRange own = estimate::lag_range(model, 0);
     lags = {.earliest = std::min(lags.earliest, own.earliest), .latest = std::max(lags.latest, own.latest)};
   }
-  const estimate::Sample beams = estimate::thin_by_area(estimate::covered(sample, lags.earliest, lags.latest),
-                                                        models.front(), settings.points, 1);
+  estimate::Sample beams = estimate::covered(sample, lags.earliest, lags.latest);
+  for (const SensorModel& model : models) beams = estimate::placeable(model, beams);
+  beams = estimate::thin_by_area(beams, models.front(), settings.points, 1);
   std::vector<double> all;
   for (const SensorModel& model : models) all.push_back(model_quality(model, beams, measure, settings.sigma));
   return all;

@@ -43,8 +43,9 @@ EffectDetection effect_detection(const simulate::ScannerSettings& scanner, const
   const auto simulated = simulate_beams(BeamChoice::kAll, scanner, scene, motion, terms);
   const SensorModel truth(simulated.truth, terms);
   const estimate::LagRange lags = estimate::lag_range(truth, 0);
-  const estimate::Sample sample =
-      estimate::covered({.beams = simulated.beams, .plate = &simulated.plate}, lags.earliest, lags.latest);
+  const estimate::Sample sample = estimate::placeable(
+      truth,
+      estimate::covered({.beams = simulated.beams, .plate = &simulated.plate}, lags.earliest, lags.latest));
   const diagnose::SurfaceObservations observations(truth, sample, diagnosis.refinement, diagnosis.beams);
   const estimate::FreeParameters base =
       estimate::identifiable_parameters(estimate::free_parameters(truth, sample.beams, {}), truth,

@@ -56,6 +56,15 @@ class FormTrial {
     fmt::print("; {}", verdict);
   }
 
+  /// What an effect is that has no name.
+  static std::string unidentified(const std::string& cause, const Findings& findings) {
+    if (!findings.unnamed.empty()) return "unnamed";
+    const bool is_listed = std::ranges::any_of(findings.unobservable, [&](const Unobservable& one) {
+      return one.parameter == cause || one.parameter.ends_with("." + cause);
+    });
+    return is_listed ? "listed as unobservable" : "missed";
+  }
+
   void judge(const test::InjectedEffect& effect, const Findings& findings) {
     Names right, in_class, wrong, all;
     for (const Finding& finding : findings.findings) {
@@ -75,14 +84,13 @@ class FormTrial {
     const bool is_plain = effect.cause == "none" || effect.cause == "shape";
     const std::string false_name = wrong.empty() ? "" : is_plain ? "false name" : " and a false name";
     if (is_plain)
-      count(effect.cause, !false_name.empty()        ? false_name
-                          : effect.cause == "none"   ? "nothing"
-                          : findings.unnamed.empty() ? "missed"
-                                                     : "unnamed");
+      count(effect.cause, !false_name.empty()      ? false_name
+                          : effect.cause == "none" ? "nothing"
+                                                   : unidentified(effect.cause, findings));
     else if (!right.empty() || !in_class.empty())
       count(effect.cause, (right.empty() ? "class" : "right") + false_name);
     else
-      count(effect.cause, !wrong.empty() ? "wrong name" : findings.unnamed.empty() ? "missed" : "unnamed");
+      count(effect.cause, !wrong.empty() ? "wrong name" : unidentified(effect.cause, findings));
     fmt::print(": {}", fmt::join(all, ", "));
   }
 

@@ -76,7 +76,7 @@ void DiagnoseNoiseModelStage::finish(Outputs& out, Context& context) {
   const estimate::LagRange lag = estimate::lag_range(model, 0);
   context.progress(0, "associating beams with surfaces");
   const SurfaceObservations observations =
-      all_of(model, estimate::covered(sample, lag.earliest, lag.latest), noise_);
+      all_of(model, estimate::placeable(model, estimate::covered(sample, lag.earliest, lag.latest)), noise_);
   const Measurements& beams = observations.sample().beams;
   AssociatedBeams all{
       .model = model,

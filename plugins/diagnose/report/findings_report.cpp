@@ -98,19 +98,29 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
   return finding;
 }
 
-/// Whether an accepted hypothesis is the level of another one: of the same laser, in a family whose zero is a
-/// convention.
-bool is_level_of(const Hypothesis& one, const Hypothesis& other) {
-  return one.accepted && other.accepted && one.candidate.is_level_of(other.candidate);
+/// Whether the level of another hypothesis, of the same laser, explains this one as well.
+bool may_be_level_of(const Hypothesis& one, const Hypothesis& other, double odds) {
+  return one.candidate.level.empty() &&
+         std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
+           return competitor.behind < odds && competitor.term == other.candidate.level &&
+                  competitor.owner == other.candidate.owner && other.candidate.is_cause();
+         });
+}
+
+/// Whether an accepted hypothesis is the level of another one, in a family whose zero is a convention, or is
+/// not resolvable from it.
+bool is_level_of(const Hypothesis& one, const Hypothesis& other, double odds) {
+  return one.accepted && other.accepted &&
+         (one.candidate.is_level_of(other.candidate) || may_be_level_of(one, other, odds));
 }
 
 bool is_reported(const Hypothesis& one) { return one.candidate.is_cause() && !one.is_clock_line; }
 
 /// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
 /// is.
-const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all) {
+const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all, double odds) {
   const auto whole =
-      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other); });
+      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other, odds); });
   const Hypothesis& member = whole == all.end() ? one : *whole;
   return *std::ranges::find_if(all, [&](const Hypothesis& other) {
     return other.accepted == member.accepted && is_reported(other) &&
@@ -118,9 +128,12 @@ const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothe
   });
 }
 
-/// Adds another member of the same family to a finding.
-void merge(Finding& finding, const Finding& other) {
-  finding.parameters.insert(finding.parameters.end(), other.parameters.begin(), other.parameters.end());
+/// Adds another member of the same family, or what is its level, to a finding.
+///
+/// @param is_member  whether its parameters are the family's
+void merge(Finding& finding, const Finding& other, bool is_member) {
+  if (is_member)
+    finding.parameters.insert(finding.parameters.end(), other.parameters.begin(), other.parameters.end());
   finding.explained_fraction = std::min(1.0, finding.explained_fraction + other.explained_fraction);
   finding.p_value = std::min(finding.p_value, other.p_value);
   finding.log10_bayes_factor = std::max(finding.log10_bayes_factor, other.log10_bayes_factor);
@@ -133,15 +146,18 @@ std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& ca
   std::vector<Finding> findings;
   std::map<const Hypothesis*, std::size_t> place;
   for (const Hypothesis& hypothesis : all) {
-    if (!is_reported(hypothesis) || &reported_with(hypothesis, all) != &hypothesis) continue;
+    if (!is_reported(hypothesis) || &reported_with(hypothesis, all, odds) != &hypothesis) continue;
     place.emplace(&hypothesis, findings.size());
     findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
   for (const Hypothesis& hypothesis : all) {
     if (!is_reported(hypothesis)) continue;
-    const Hypothesis& with = reported_with(hypothesis, all);
+    const Hypothesis& with = reported_with(hypothesis, all, odds);
     if (&with == &hypothesis) continue;
-    merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
+    const bool is_member =
+        hypothesis.candidate.is_of_family(with.candidate) || hypothesis.candidate.is_level_of(with.candidate);
+    merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise),
+          is_member);
   }
   return findings;
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/pipeline/estimate/support.hpp"
+#include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
 namespace {
@@ -46,6 +47,21 @@ TEST(Sample, CoveredLeavesOutWhatAnEtaInTheRangeWouldPushOffThePlatesReadings) {
   EXPECT_GE(sample.beams.time.front() - 0.4, plate.begin());
   EXPECT_LE(sample.beams.time.back() + 0.3, plate.end());
   EXPECT_LT(sample.beams.size(), recording().beams.size());
+}
+
+TEST(Sample, PlaceableLeavesOutWhatATermOfTimePushesOffThePlatesReadings) {
+  const auto sample = covered(sample_of(recording()), -0.1, 0.1);
+  EXPECT_EQ(placeable(SensorModel(recording().truth), sample).beams.size(), sample.beams.size());
+  Calibration late = recording().truth;
+  TermParameters drift = neutral_parameters(built_in_terms().get("clock.drift")->info());
+  drift.parameters[0].value = 0.01;
+  // A clock that reads a hundredth of the time since the epoch less.
+  late.lasers[0].terms.push_back(drift);
+  late.lasers[0].eta.value = recording().plate.end() - sample.beams.time.back() - 0.005;
+  const SensorModel model(late, built_in_terms());
+  const auto placed = placeable(model, sample);
+  EXPECT_LT(placed.beams.size(), sample.beams.size());
+  EXPECT_EQ(model.place(placed.beams, *placed.plate).index.size(), placed.beams.size());
 }
 
 TEST(Sample, ThinningByAreaIsRepeatableAndEvensOutTheDensityAtTheSpinAxis) {

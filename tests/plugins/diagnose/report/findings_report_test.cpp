@@ -118,6 +118,28 @@ TEST(FindingsReport, PrintsWhyACauseWasRejected) {
               HasSubstr("rejected: it explains less than the residual"));
 }
 
+TEST(FindingsReport, HasNoCauseThatTheLevelOfAnotherExplains) {
+  Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  const auto of_laser3 = [](const std::string& term, const std::string& level, double of_offset) {
+    return Hypothesis{
+        .candidate =
+            {.owner = 2, .term = {.term = term}, .name = "laser3." + term, .family = term, .level = level},
+        .test = {},
+        .competitors =
+            {{.name = "laser3.range.offset", .behind = of_offset, .term = "range.offset", .owner = 2}},
+        .gains = {}};
+  };
+  diagnosis.hypotheses = {of_laser3("range.cyclic", "", -20),
+                          of_laser3("range.intensity", "range.offset", 99)};
+  const Findings findings = reported(diagnosis);
+  ASSERT_THAT(findings.findings, SizeIs(1));
+  EXPECT_EQ(findings.findings[0].cause, "range.intensity");
+  diagnosis.hypotheses[0].competitors[0].behind = 20;
+  EXPECT_THAT(reported(diagnosis).findings, SizeIs(2)) << "no constant does that";
+  diagnosis.hypotheses[0].competitors[0] = {.behind = -20, .term = "range.offset", .owner = 1};
+  EXPECT_THAT(reported(diagnosis).findings, SizeIs(2)) << "of another laser";
+}
+
 TEST(FindingsReport, LeavesOutInsignificantAndSmallDeviations) {
   const Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
   Diagnosis chance = diagnosis;
