@@ -98,29 +98,29 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
   return finding;
 }
 
-/// Whether the level of another hypothesis, of the same laser, explains this one as well.
-bool may_be_level_of(const Hypothesis& one, const Hypothesis& other, double odds) {
-  return one.candidate.level.empty() &&
+/// Whether the level of another hypothesis, of the same laser, explains no less than this one.
+bool is_explained_by_level_of(const Hypothesis& other, const Hypothesis& one) {
+  return one.candidate.level.empty() && !other.candidate.level.empty() &&
          std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
-           return competitor.behind < odds && competitor.term == other.candidate.level &&
-                  competitor.owner == other.candidate.owner && other.candidate.is_cause();
+           return competitor.behind <= 0 && competitor.term == other.candidate.level &&
+                  competitor.owner == other.candidate.owner;
          });
 }
 
-/// Whether an accepted hypothesis is the level of another one, in a family whose zero is a convention, or is
-/// not resolvable from it.
-bool is_level_of(const Hypothesis& one, const Hypothesis& other, double odds) {
+/// Whether an accepted hypothesis is the level of another one, in a family whose zero is a convention, or no
+/// more than that.
+bool is_level_of(const Hypothesis& one, const Hypothesis& other) {
   return one.accepted && other.accepted &&
-         (one.candidate.is_level_of(other.candidate) || may_be_level_of(one, other, odds));
+         (one.candidate.is_level_of(other.candidate) || is_explained_by_level_of(other, one));
 }
 
 bool is_reported(const Hypothesis& one) { return one.candidate.is_cause() && !one.is_clock_line; }
 
 /// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
 /// is.
-const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all, double odds) {
+const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothesis>& all) {
   const auto whole =
-      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other, odds); });
+      std::ranges::find_if(all, [&](const Hypothesis& other) { return is_level_of(one, other); });
   const Hypothesis& member = whole == all.end() ? one : *whole;
   return *std::ranges::find_if(all, [&](const Hypothesis& other) {
     return other.accepted == member.accepted && is_reported(other) &&
@@ -146,13 +146,13 @@ std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& ca
   std::vector<Finding> findings;
   std::map<const Hypothesis*, std::size_t> place;
   for (const Hypothesis& hypothesis : all) {
-    if (!is_reported(hypothesis) || &reported_with(hypothesis, all, odds) != &hypothesis) continue;
+    if (!is_reported(hypothesis) || &reported_with(hypothesis, all) != &hypothesis) continue;
     place.emplace(&hypothesis, findings.size());
     findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
   for (const Hypothesis& hypothesis : all) {
     if (!is_reported(hypothesis)) continue;
-    const Hypothesis& with = reported_with(hypothesis, all, odds);
+    const Hypothesis& with = reported_with(hypothesis, all);
     if (&with == &hypothesis) continue;
     const bool is_member =
         hypothesis.candidate.is_of_family(with.candidate) || hypothesis.candidate.is_level_of(with.candidate);
