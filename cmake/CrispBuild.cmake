@@ -50,7 +50,7 @@ if(CRISP_SANITIZE)
     add_compile_options(-fno-sanitize=null,object-size)
     # What tests test is instrumented; they are not, nor optimised, so that they compile in a quarter of the time.
     # Libraries keep their own, instrumented, copies of inline functions. (Objects of the release build would be of
-    # another compiler, and members without a size, as JSON's have them, are not alike in both.)
+    # another compiler, which gives the empty members of JSON's maps another size.)
     target_compile_options(crisp_test_settings INTERFACE -fno-sanitize=all -O0)
     add_link_options(-Wl,-Bsymbolic-functions)
   endif()

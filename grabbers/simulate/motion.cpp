@@ -31,8 +31,8 @@ double first_direction(const Knots& knots) {
   return turning == knots.end() ? 0 : std::copysign(1.0, turning->rate);
 }
 
-/// Lets the play follow to a state of the plate, and gives the state its direction.
-PlateState followed(data::Play& play, PlateState state) {
+/// The state with its direction, by the play of the motion before it.
+PlateState with_direction(data::Play play, PlateState state) {
   state.direction = play.follow(state.angle);
   if (std::abs(state.direction) < 1) state.direction_rate = state.rate / data::Play::kHalf;
   return state;
@@ -111,12 +111,11 @@ std::optional<PlateState> Motion::at(double t) const {
   }
   if (next == knots_.end()) {
     const Knot& last = knots_.back();
-    data::Play play = plays_.back();
-    return followed(play, {.angle = angles_.back() + last.rate * (t - last.time), .rate = last.rate});
+    return with_direction(plays_.back(),
+                          {.angle = angles_.back() + last.rate * (t - last.time), .rate = last.rate});
   }
   const auto from = static_cast<std::size_t>(std::prev(next) - knots_.begin());
-  data::Play play = play_after(from, t);
-  return followed(play, between(from, t));
+  return with_direction(play_after(from, t), between(from, t));
 }
 
 /// The plate between a knot and the next one, without its direction.
