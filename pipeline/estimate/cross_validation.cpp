@@ -28,17 +28,17 @@ Sample turns_of(const Sample& sample, int parity) {
 }  // namespace
 
 std::optional<CrossValidation> cross_validate(const SensorModel& model, const Sample& sample,
-                                              const RefinementSettings& settings,
-                                              const RoundReporter& go_on) {
+                                              const RefinementSettings& settings, const RoundReporter& go_on,
+                                              const std::shared_ptr<const SurfaceMap>& known) {
   if (turned(sample) < 2 * 2 * std::numbers::pi) return std::nullopt;
   const Sample some = thin_evenly(sample, kInBothHalves, 1);
   RefinementSettings of_half = settings;
-  of_half.compare_views = false;
+  of_half.detail = Detail::kStandardErrors;
   std::array<std::optional<Outcome>, 2> halves;
   for (const int parity : {0, 1}) {
     try {
       halves.at(static_cast<std::size_t>(parity)) =
-          refine_by_surfels(model, turns_of(some, parity), of_half, go_on).outcome;
+          refine_by_surfels(model, turns_of(some, parity), of_half, go_on, known).outcome;
     } catch (const Error&) {
       return std::nullopt;  // nothing is flat in half of the beams, or nothing is determined
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "pipeline/estimate/surfel_refinement.hpp"
@@ -18,8 +19,10 @@ struct CrossValidation {
 ///
 /// @param model  a refined one
 /// @param go_on  whether the work is to go on
+/// @param known  surfaces that the model was fitted to; null: they are searched for
 /// @return       nothing where the plate made less than two turns, or the halves determine other parameters
 std::optional<CrossValidation> cross_validate(const SensorModel& model, const Sample& sample,
-                                              const RefinementSettings& settings, const RoundReporter& go_on);
+                                              const RefinementSettings& settings, const RoundReporter& go_on,
+                                              const std::shared_ptr<const SurfaceMap>& known = nullptr);
 
 }  // namespace crisp::estimate

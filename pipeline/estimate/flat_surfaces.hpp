@@ -7,10 +7,6 @@
 
 namespace crisp::estimate {
 
-/// [standard errors] What is chosen with the parameters is kept from such a step on: beams that join and
-/// leave surfaces at their rims would keep steps from getting any smaller.
-inline constexpr double kSmallStep = 0.5;
-
 /// The flat surfaces against which a refinement measures its beams: segmented anew while the parameters still
 /// move, and kept in the end, so that the refinement's steps converge.
 class FlatSurfaces {
@@ -19,8 +15,8 @@ class FlatSurfaces {
 
   /// One more round, with the beams where the parameters now put them.
   ///
-  /// @param last_step  [standard errors] length of the step before; infinite in the first round
-  virtual const quality::Surfels& update(const quality::BeamsView& beams, double last_step) = 0;
+  /// @param is_moving  whether the parameters move so far yet that surfaces may be others
+  virtual const quality::Surfels& update(const quality::BeamsView& beams, bool is_moving) = 0;
 
   /// Whether it has ended to choose which beams belong to which surface.
   virtual bool is_settled() const = 0;
@@ -31,8 +27,10 @@ class FlatSurfaces {
 /// @param searches  rounds after which they are kept, at the latest
 /// @param swept     whether each view sees areas; beams that do not sweep see lines, whose own planes are not
 /// the walls'
+/// @param known     surfaces of swept beams to begin with, from a model near the start. They replace the
+/// searches while the parameters move, unless the final ones hold many more beams; none: searched for
 std::unique_ptr<FlatSurfaces> patches(const quality::SurfelSettings& settings, int searches,
-                                      bool swept = true);
+                                      bool swept = true, quality::Surfels known = {});
 
 /// Upright walls that beams in the plate's plane see as lines: see wall_lines().
 std::unique_ptr<FlatSurfaces> upright_walls(const quality::SurfelSettings& settings, int searches);

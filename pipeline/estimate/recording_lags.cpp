@@ -19,7 +19,7 @@ std::optional<Outcome> lags_alone(const SensorModel& model, const Sample& record
                                   RefinementSettings settings) {
   settings.fixed = {"lambda", "tau", "alpha"};
   settings.terms.clear();
-  settings.compare_views = false;
+  settings.detail = Detail::kStandardErrors;
   try {
     return refine_by_surfels(model, recording, settings).outcome;
   } catch (const Error&) {

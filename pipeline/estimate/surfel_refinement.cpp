@@ -73,14 +73,44 @@ std::vector<std::size_t> fixed_parameters(const SensorModel& model, const Sample
   return all;
 }
 
+/// How the start, which counts as an observation, acts on the outcome.
+enum class Pull {
+  kNone,
+  kDraws,  ///< it draws a parameter from where the data have it, by a good part of its standard error
+  kIsFar   ///< a parameter moved farther than the start was trusted to
+};
+
+/// The start draws a parameter by (x − x₀) · s²/p² for a standard deviation p of the start.
+Pull pull_of_start(const SurfelRefiner& refiner, const ParameterPrior& prior) {
+  constexpr double kMuch = 0.2;
+  const SensorModel& start = refiner.start();
+  const Eigen::VectorXd trusted = ranges_of(prior, start, refiner.free());
+  const Eigen::VectorXd moved =
+      (picked(refiner.model(), refiner.free()) - picked(start, refiner.free())).cwiseAbs();
+  Pull pull = Pull::kNone;
+  for (Eigen::Index k = 0; k < moved.size(); ++k) {
+    const std::string& name = start.names()[refiner.free()[static_cast<std::size_t>(k)]];
+    if (prior.nominal.contains(name)) continue;
+    if (moved[k] > 2 * trusted[k]) return Pull::kIsFar;
+    // Where the covered lags may end.
+    if (name.ends_with(".eta") && moved[k] > 0.99 * trusted[k]) return Pull::kIsFar;
+    const double error = std::sqrt(refiner.covariance()(k, k));
+    if (moved[k] * error > kMuch * trusted[k] * trusted[k]) pull = Pull::kDraws;
+  }
+  return pull;
+}
+
 /// A refinement from one start, and what it was found with.
 struct Attempt {
   std::unique_ptr<SurfelRefiner> refiner;
   Refinement refinement;
+  Pull pull = Pull::kNone;
 };
 
+constexpr int kStarts = 4;  // at most, from each of which the data may draw the parameters further
+
 Attempt refine_once(const SensorModel& start, const Sample& sample, const RefinementSettings& settings,
-                    const RoundReporter& report) {
+                    const RoundReporter& report, const SurfaceMap* known) {
   const LagRange lag = refined_lags(start, settings.prior);
   Sample inside = covered(sample, lag.earliest, lag.latest);
   const auto caveat = caveat_of_half_a_turn(start, inside);
@@ -89,9 +119,10 @@ Attempt refine_once(const SensorModel& start, const Sample& sample, const Refine
   const std::size_t all = of_base(possible.free, start);
   FreeParameters parameters = identifiable_parameters(std::move(possible), start, inside, ParameterPrior{});
   auto owner = std::make_unique<SurfelRefiner>(with_nominal(start, parameters.unobservable, settings.prior),
-                                               std::move(inside), parameters.free, settings);
+                                               std::move(inside), parameters.free, settings, known);
   SurfelRefiner& refiner = *owner;
   int round = 0;
+  int starts = 1;
   bool converged = false;
   while (!converged && round < settings.max_rounds && !refiner.free().empty()) {
     if (report && !report(round)) break;
@@ -101,12 +132,19 @@ Attempt refine_once(const SensorModel& start, const Sample& sample, const Refine
       parameters.unobservable.push_back(std::move(lost));
       converged = false;  // the others take one more step without it
     }
+    // The surfaces are those of the model, and it need not begin anew.
+    if (converged && starts < kStarts && pull_of_start(refiner, settings.prior) == Pull::kDraws) {
+      refiner.take_as_start();
+      ++starts;
+      converged = false;
+    }
   }
   if (refiner.free().empty()) {
     throw Error("these data determine none of the parameters",
                 "record several turns of the plate in a room with walls, and check the option fixed");
   }
-  refiner.widen_by_shared_errors();
+  const Pull pull = pull_of_start(refiner, settings.prior);
+  if (settings.detail >= Detail::kStandardErrors) refiner.widen_by_shared_errors();
   refiner.consider_held(parameters.unobservable);
   const auto caveat_of_fixed = refiner.consider_fixed(fixed_parameters(start, sample, settings));
   const auto caveat_of_most = caveat_of_few(of_base(refiner.free(), start), all, sample);
@@ -117,13 +155,14 @@ Attempt refine_once(const SensorModel& start, const Sample& sample, const Refine
     if (each) result.outcome.caveats.push_back(*each);
   }
   result.rounds = round;
+  result.restarts = starts - 1;
   result.converged = converged;
   if (!converged && round == settings.max_rounds) {
     result.outcome.caveats.push_back(fmt::format(
         "the refinement did not converge in {} rounds: its last step was {:.2g} standard errors. Check for objects that moved in the scene, or record for longer",
         round, refiner.last_step()));
   }
-  return {.refiner = std::move(owner), .refinement = std::move(result)};
+  return {.refiner = std::move(owner), .refinement = std::move(result), .pull = pull};
 }
 
 /// The free parameters that a refinement moved by more than twice what its start was trusted to, in words.
@@ -150,53 +189,37 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
   return moves;
 }
 
-/// Whether the start, which counts as an observation, draws a parameter from where the data have it by a good
-/// part of its standard error: (x − x₀) · s²/p² for a standard deviation p of the start.
-bool is_drawn_to_start(const SensorModel& start, const Outcome& found, const ParameterPrior& prior) {
-  constexpr double kMuch = 0.2;
-  const Eigen::VectorXd trusted = ranges_of(prior, start, found.free);
-  const Eigen::VectorXd moved = picked(found.model, found.free) - picked(start, found.free);
-  for (Eigen::Index k = 0; k < moved.size(); ++k) {
-    if (prior.nominal.contains(start.names()[found.free[static_cast<std::size_t>(k)]])) continue;
-    const double error = std::sqrt(found.covariance(k, k));
-    const bool is_lag = start.names()[found.free[static_cast<std::size_t>(k)]].ends_with(".eta");
-    if (is_lag && std::abs(moved[k]) > 0.99 * trusted[k]) return true;  // where the covered lags may end
-    if (std::abs(moved[k]) > 2 * trusted[k]) return true;
-    if (std::abs(moved[k]) * error > kMuch * trusted[k] * trusted[k]) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
-                             const RefinementSettings& settings, const RoundReporter& report) {
-  constexpr int kRestarts = 3;
+                             const RefinementSettings& settings, const RoundReporter& report,
+                             std::shared_ptr<const SurfaceMap> known) {
   const auto was_stopped = [&](const Refinement& refinement) {
     return !refinement.converged && refinement.rounds < settings.max_rounds;
   };
-  Attempt last = refine_once(start, sample, settings, report);
+  Attempt last = refine_once(start, sample, settings, report, known.get());
   const auto compared = [&] {
-    if (settings.compare_views) last.refiner->compare_views(last.refinement);
+    if (settings.detail == Detail::kViews) last.refiner->compare_views(last.refinement);
     return std::move(last.refinement);
   };
   SensorModel from = start;
   // The start counts as an observation: a start that was far off would draw the result towards itself.
-  for (int restart = 0; restart < kRestarts; ++restart) {
+  for (int restart = 1; restart < kStarts; ++restart) {
     const Refinement& result = last.refinement;
-    const bool is_settled = result.converged && !is_drawn_to_start(from, result.outcome, settings.prior);
+    const bool is_settled = result.converged && last.pull == Pull::kNone;
     if (was_stopped(result) || is_settled) return compared();
     from = result.outcome.model;
-    Attempt next = refine_once(from, sample, settings, report);
+    if (result.surfaces) known = result.surfaces;
+    Attempt next = refine_once(from, sample, settings, report, known.get());
     if (was_stopped(next.refinement)) return compared();
+    next.refinement.restarts += 1 + result.restarts;
     last = std::move(next);
-    last.refinement.restarts = restart + 1;
   }
   Refinement result = compared();
   if (const auto moves = far_moves(from, result.outcome, settings.prior); !moves.empty()) {
     result.outcome.caveats.push_back(fmt::format(
         "the refinement did not converge: in the last of {} restarts {}. Check the rig's mount and nominal values, or start from a better calibration (calibrate.load)",
-        kRestarts, fmt::join(moves, "; ")));
+        kStarts - 1, fmt::join(moves, "; ")));
   }
   return result;
 }

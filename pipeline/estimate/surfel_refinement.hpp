@@ -2,16 +2,26 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pipeline/estimate/outcome.hpp"
 #include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
+#include "pipeline/estimate/surface_map.hpp"
 #include "pipeline/estimate/view_consistency.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
 
 namespace crisp::estimate {
+
+/// What a refinement gives besides the model, each with what is before it.
+enum class Detail {
+  kModel,           ///< its covariance takes the beams' errors for independent
+  kStandardErrors,  ///< errors that beams share are in the covariance
+  kViews            ///< `scatter`, `views` and their caveats
+};
 
 struct RefinementSettings {
   std::vector<std::string> fixed;  ///< parameters to be left alone: see free_parameters()
@@ -26,8 +36,10 @@ struct RefinementSettings {
   /// Rounds in which surfaces are searched for, at most. From a degree off, walls that lie apart come
   /// together one after the other.
   int searches = 12;
-  double tolerance = 0.02;    ///< [standard errors] steps below which the refinement has converged
-  bool compare_views = true;  ///< whether `scatter`, `views` and their caveats are wanted besides the outcome
+  double tolerance = 0.02;  ///< [standard errors] steps below which the refinement has converged
+  Detail detail = Detail::kViews;
+  /// Beams of a step's normal equations at most, evenly subsampled from the surfaces.
+  std::size_t equation_beams = std::numeric_limits<std::size_t>::max();
 };
 
 struct Refinement {
@@ -41,6 +53,7 @@ struct Refinement {
   int rounds = 0;
   int restarts = 0;  ///< how often it began anew since its start was far off
   bool converged = false;
+  std::shared_ptr<const SurfaceMap> surfaces;  ///< that the model was fitted to; null: there are none
 };
 
 /// One step of the work: its number, and whether the work is to go on.
@@ -59,8 +72,11 @@ using RoundReporter = std::function<bool(int round)>;
 ///
 /// @param start   accurate to some centimetres and degrees
 /// @param sample  all beams; need not be covered
+/// @param known   surfaces that a model near the start was fitted to, with beams of the same recording; null:
+/// none, they are searched for
 /// @throws Error  if no flat surface is seen, or if no parameter is free
 Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
-                             const RefinementSettings& settings, const RoundReporter& report = {});
+                             const RefinementSettings& settings, const RoundReporter& report = {},
+                             std::shared_ptr<const SurfaceMap> known = nullptr);
 
 }  // namespace crisp::estimate

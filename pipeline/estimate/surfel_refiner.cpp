@@ -34,19 +34,25 @@ LagRange refined_lags(const SensorModel& start, const ParameterPrior& prior) {
 }
 
 SurfelRefiner::SurfelRefiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
-                             const RefinementSettings& settings)
-    : start_(start),
-      model_(start),
-      sample_(std::move(sample)),
-      free_(std::move(free)),
-      settings_(settings),
-      surfaces_(is_in_plane(sample_)
-                    ? upright_walls(settings.surfels, settings.searches)
-                    : patches(settings.surfels, settings.searches, is_swept(sample_.beams))) {}
+                             const RefinementSettings& settings, const SurfaceMap* known)
+    : start_(start), model_(start), sample_(std::move(sample)), free_(std::move(free)), settings_(settings) {
+  if (is_in_plane(sample_)) {
+    surfaces_ = upright_walls(settings.surfels, settings.searches);
+    return;
+  }
+  SurfaceMap::Selection begin;
+  if (known != nullptr) {
+    begin = known->of(sample_.beams);
+    noise_ = std::move(begin.noise);
+    noise_updates_ = 1;
+  }
+  surfaces_ = patches(settings.surfels, settings.searches, is_swept(sample_.beams), std::move(begin.surfels));
+}
 
 bool SurfelRefiner::step() {
   const PlacedBeams placed(model_, sample_);
-  all_ = surfaces_->update(placed.view(noise_), last_step_);
+  const bool was_settled = surfaces_->is_settled();
+  all_ = surfaces_->update(placed.view(noise_), is_moving());
   found_ = select_static(all_, placed.view(noise_));
   if (found_.surfels.empty()) {
     throw Error("these data contain no flat surface",
@@ -56,11 +62,16 @@ bool SurfelRefiner::step() {
   sample_.beams.cos_incidence = incidences(found_, placed.view(noise_));
   const Eigen::VectorXd before = picked(model_, free_);
   const Eigen::VectorXd step = posterior_step(placed);
-  update_damping(step);
+  if (was_settled)
+    update_damping(step);
+  else
+    damping_ = 1;
   const Eigen::VectorXd after = keep_covered(before + damping_ * step);
   last_change_ = after - before;
   model_ = with(model_, free_, after);
   last_step_ = (last_change_.array() / covariance_.diagonal().array().sqrt()).abs().maxCoeff();
+  last_shift_ = std::sqrt(last_change_.dot(equations_.matrix * last_change_) /
+                          static_cast<double>(std::max<std::size_t>(1, equations_.beams)));
   const bool is_reweighted = update_noise(placed.view(noise_));
   return surfaces_->is_settled() && last_step_ < settings_.tolerance && !is_reweighted;
 }
@@ -68,8 +79,12 @@ bool SurfelRefiner::step() {
 /// Step to where the linearized posterior is largest within the parameters' bounds; computes the information
 /// and the covariance.
 Eigen::VectorXd SurfelRefiner::posterior_step(const PlacedBeams& placed) {
-  equations_ = quality::normal_equations(found_, placed.view(noise_), free_.size(),
-                                         surfel_rows(model_, sample_, free_), settings_.surfels);
+  const auto equations = [&](const quality::Surfels& surfels) {
+    return quality::normal_equations(surfels, placed.view(noise_), free_.size(),
+                                     surfel_rows(model_, sample_, free_), settings_.surfels);
+  };
+  const bool is_all = found_.members.size() <= settings_.equation_beams;
+  equations_ = is_all ? equations(found_) : equations(quality::thinned(found_, settings_.equation_beams));
   information_ = equations_.matrix / equations_.covariance_factor();
   const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
   const Eigen::VectorXd from_start = picked(model_, free_) - centres_of(settings_.prior, start_, free_);
@@ -85,7 +100,7 @@ Eigen::VectorXd SurfelRefiner::posterior_step(const PlacedBeams& placed) {
 /// Damps the steps by the secant method where one takes back what the step before did: where parameters are
 /// nearly exchangeable, the information changes within a standard error, and full steps alternate for ever.
 void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
-  if (!surfaces_->is_settled() || last_change_.size() != step.size()) {
+  if (last_change_.size() != step.size()) {
     damping_ = 1;
     return;
   }
@@ -98,11 +113,13 @@ void SurfelRefiner::update_damping(const Eigen::VectorXd& step) {
 }
 
 Refinement SurfelRefiner::result() const {
-  return {.outcome =
-              {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}, .caveats = {}},
-          .surfels = found_.surfels.size(),
-          .beams = equations_.beams,
-          .chi2 = equations_.chi2 / std::max(1.0, equations_.degrees_of_freedom)};
+  return {
+      .outcome =
+          {.model = model_, .free = free_, .covariance = covariance_, .unobservable = {}, .caveats = {}},
+      .surfels = found_.surfels.size(),
+      .beams = equations_.beams,
+      .chi2 = equations_.chi2 / std::max(1.0, equations_.degrees_of_freedom),
+      .surfaces = all_.surfels.empty() ? nullptr : std::make_shared<SurfaceMap>(sample_.beams, all_, noise_)};
 }
 
 void SurfelRefiner::compare_views(Refinement& result) const {
@@ -117,6 +134,14 @@ void SurfelRefiner::compare_views(Refinement& result) const {
     result.views.insert(result.views.end(), pairs.begin(), pairs.end());
   }
   result.outcome.caveats.insert(result.outcome.caveats.begin(), caveats.begin(), caveats.end());
+}
+
+/// What is chosen with the parameters is kept from a small step on: beams that join and leave surfaces at
+/// their rims would keep steps from getting any smaller.
+bool SurfelRefiner::is_moving() const {
+  constexpr double kSmallStep = 0.5;    // [standard errors]
+  constexpr double kSmallShift = 0.02;  // of the noise, by which beams move to and from their surfaces (RMS)
+  return last_step_ > kSmallStep && last_shift_ > kSmallShift;
 }
 
 /// Clamps each η to where encoder readings cover the beams.
@@ -135,7 +160,7 @@ Eigen::VectorXd SurfelRefiner::keep_covered(Eigen::VectorXd values) const {
 /// @return  whether the beams' weights changed
 bool SurfelRefiner::update_noise(const quality::BeamsView& placed) {
   constexpr int kTimes = 2;
-  if (last_step_ > kSmallStep || noise_updates_ == kTimes) return false;
+  if (is_moving() || noise_updates_ == kTimes) return false;
   ++noise_updates_;
   const bool was_uniform = noise_.empty();
   noise_ = relative_noise(found_, placed, sample_.beams, settings_.surfels);
@@ -148,8 +173,8 @@ bool SurfelRefiner::update_noise(const quality::BeamsView& placed) {
 quality::Surfels SurfelRefiner::select_static(const quality::Surfels& found,
                                               const quality::BeamsView& beams) {
   constexpr int kTimes = 5;
-  const bool is_moving = last_step_ > kSmallStep && selections_ < kTimes;
-  if (is_moving || is_static_.size() != found.surfels.size()) {
+  const bool is_open = selections_ == 0 || (is_moving() && selections_ < kTimes);
+  if (is_open || is_static_.size() != found.surfels.size()) {
     is_static_ = static_surfaces(found, beams, settings_.surfels.noise);
     if (surfaces_->is_settled()) ++selections_;
   }

@@ -23,8 +23,9 @@ class SurfelRefiner {
  public:
   /// @param sample  beams that encoder readings cover at every η of refined_lags()
   /// @param free    indices of the parameters to be estimated
+  /// @param known   surfaces to begin with; null: they are searched for
   SurfelRefiner(const SensorModel& start, Sample sample, std::vector<std::size_t> free,
-                const RefinementSettings& settings);
+                const RefinementSettings& settings, const SurfaceMap* known = nullptr);
 
   /// Places the beams, updates the surfaces and takes one step.
   ///
@@ -51,6 +52,12 @@ class SurfelRefiner {
   /// @return  a caveat if free parameters hang on fixed ones whose standard deviation the rig does not give
   std::optional<std::string> consider_fixed(const std::vector<std::size_t>& fixed);
 
+  /// Takes the model as the start, which counts as an observation.
+  void take_as_start() { start_ = model_; }
+
+  const SensorModel& start() const { return start_; }
+  const SensorModel& model() const { return model_; }
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
   const std::vector<std::size_t>& free() const { return free_; }
   double last_step() const { return last_step_; }  ///< [standard errors] of the parameter that moved most
 
@@ -60,6 +67,7 @@ class SurfelRefiner {
   void compare_views(Refinement& result) const;
 
  private:
+  bool is_moving() const;
   Eigen::VectorXd posterior_step(const PlacedBeams& placed);
   void update_damping(const Eigen::VectorXd& step);
   Eigen::VectorXd widening_by_quantization(const quality::NormalEquations& without) const;
@@ -89,6 +97,7 @@ class SurfelRefiner {
   Eigen::VectorXd last_change_;
   double damping_ = 1;  // of the steps
   double last_step_ = std::numeric_limits<double>::infinity();
+  double last_shift_ = std::numeric_limits<double>::infinity();  // of beams, in units of their noise
 };
 
 /// The η at which the encoder readings have to cover a refinement's beams.

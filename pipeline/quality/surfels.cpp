@@ -103,6 +103,24 @@ void Surfels::add(Surfel surfel, std::span<const std::uint32_t> beams) {
   surfels.push_back(std::move(surfel));
 }
 
+Surfels thinned(const Surfels& surfels, std::size_t most) {
+  std::size_t all = 0;
+  for (const Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
+  const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
+  Surfels some;
+  for (Surfel surfel : surfels.surfels) {
+    const auto begin = static_cast<std::uint32_t>(some.members.size());
+    for (std::size_t k = surfel.begin; k < surfel.end; k += stride) {
+      some.members.push_back(surfels.members[k]);
+      some.weights.push_back(surfels.weights[k]);
+    }
+    surfel.begin = begin;
+    surfel.end = static_cast<std::uint32_t>(some.members.size());
+    some.surfels.push_back(surfel);
+  }
+  return some;
+}
+
 Surfels find_surfels(const BeamsView& beams, const SurfelSettings& settings) {
   check(beams, settings);
   const SurfelCells cells = cells_of(beams, settings);

@@ -64,6 +64,9 @@ struct Surfels {
   }
 };
 
+/// Systematic subsample of each surface's beams, with at most about `most` in total.
+Surfels thinned(const Surfels& surfels, std::size_t most);
+
 /// Finds flat surfaces. Cells are tried from large to small. Whether one is flat is decided on shape, never
 /// on how well views agree, for that is what is to be judged by the surfels: each view is compared with a
 /// plane of its own, and the common plane may be as thick as max_thickness. Flat cells of one surface are

@@ -138,8 +138,9 @@ void RefineStage::finish(Outputs& out, Context& context) {
   if (auto better = refined_from_rig(sample, refined, context)) refined = std::move(*better);
   if (context.interrupted()) return;
 
-  const auto halves = estimate::cross_validate(refined.outcome.model, sample, settings_,
-                                               [&](int) { return !context.interrupted(); });
+  const auto halves = estimate::cross_validate(
+      refined.outcome.model, sample, settings_, [&](int) { return !context.interrupted(); },
+      refined.surfaces);
   if (context.interrupted()) return;
   estimate::add_clock_errors(refined.outcome, context.rig(), clocks_);
   Calibration calibration = estimate::calibration_of(refined.outcome, context.rig());

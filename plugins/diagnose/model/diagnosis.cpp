@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -40,6 +41,12 @@ std::set<std::string> names_of(const std::vector<Hypothesis>& hypotheses) {
 
 bool is_new(const Hypothesis& hypothesis) { return !hypothesis.candidate.in_model; }
 
+/// How exact a refinement is.
+struct Effort {
+  estimate::Detail detail = estimate::Detail::kViews;
+  std::size_t equation_beams = std::numeric_limits<std::size_t>::max();
+};
+
 class Diagnoser {
  public:
   Diagnoser(const SensorModel& start, const estimate::Sample& sample, const TermRegistry& terms,
@@ -52,6 +59,7 @@ class Diagnoser {
     limit_lags(plain.outcome.model);
     Diagnosis result{.before = plain, .after = plain};
     extend(result);
+    complete(result);
     if (!result.hypotheses.empty()) accept(result);
     report(0.9, "simulating the scanner");
     result.left_before = left_by(result.before);
@@ -71,8 +79,7 @@ class Diagnoser {
 
   std::vector<RecordingProposal> proposed(const estimate::Refinement& fit) {
     report(0.95, "predicting other recordings");
-    return propose_recordings(fit.outcome.model, base_of(fit), observed(fit.outcome.model), terms_,
-                              settings_);
+    return propose_recordings(fit.outcome.model, base_of(fit), observed(fit), terms_, settings_);
   }
 
   void accept(Diagnosis& result) {
@@ -82,7 +89,7 @@ class Diagnoser {
     PerModel<CrossValidator::Score> scores;
     const HeldOutScore held_out = [&](const Calibration& start) {
       return scores.of(SensorModel(start, terms_), [&] {
-        const auto fit = refined_with(validator.fitted(), start, false);
+        const auto fit = refined_with(validator.fitted(), start, {.detail = estimate::Detail::kModel});
         return validator.score(fit.outcome.model);
       });
     };
@@ -96,27 +103,41 @@ class Diagnoser {
       result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
   }
 
+  /// Beams of the equations of a model that is to be tested: standard errors twice those of a million, and
+  /// the tests account for what parameters of the model are off by.
+  static constexpr std::size_t kTestedBeams = 250'000;
+
+  /// [standard errors] Steps below which a model is near enough to its optimum to be tested.
+  static constexpr double kModelTolerance = 0.1;
+
   /// The start is a calibration. Where the model lacks a large effect, searches never agree with one another.
   static constexpr int kSearches = 4;
 
   /// A refinement with all beams.
-  estimate::Refinement refined(const Calibration& calibration) const {
-    return refined_with(sample_, calibration, true);
+  estimate::Refinement refined(const Calibration& calibration, const Effort& effort = {}) const {
+    estimate::Refinement refinement = refined_with(sample_, calibration, effort);
+    if (refinement.surfaces) surfaces_ = refinement.surfaces;
+    return refinement;
   }
 
   estimate::Refinement refined_with(const estimate::Sample& sample, const Calibration& calibration,
-                                    bool compare_views) const {
+                                    const Effort& effort) const {
     estimate::RefinementSettings settings = settings_.refinement;
+    settings.detail = effort.detail;
+    settings.equation_beams = effort.equation_beams;
+    if (effort.detail == estimate::Detail::kModel) settings.tolerance = kModelTolerance;
     settings.terms = model::terms_in(calibration, terms_);
     settings.forms = true;
-    settings.compare_views = compare_views;
     settings.searches = kSearches;
     settings.prior.earliest_eta = lags_.earliest;
     settings.prior.latest_eta = lags_.latest;
-    return estimate::refine_by_surfels(SensorModel(calibration, terms_), sample, settings, [this](int) {
-      stop_if_requested();
-      return true;
-    });
+    return estimate::refine_by_surfels(
+        SensorModel(calibration, terms_), sample, settings,
+        [this](int) {
+          stop_if_requested();
+          return true;
+        },
+        surfaces_);
   }
 
   /// Keeps the beams that the encoder readings cover at each η near the plain model's, and limits η to that
@@ -176,6 +197,12 @@ class Diagnoser {
     return search;
   }
 
+  /// Refines the extended model with all that is wanted of it, as those before it were for tests only.
+  void complete(Diagnosis& result) const {
+    result.after =
+        result.hypotheses.empty() ? result.before : refined(result.after.outcome.model.calibration());
+  }
+
   /// Extends the model by the selected candidates until the selection adds nothing.
   void extend(Diagnosis& result) const {
     SearchState state;
@@ -185,7 +212,7 @@ class Diagnoser {
         report(fraction, fmt::format("round {}: {}", round + 1, what));
       };
       state.report(0, "testing all candidates");
-      const SurfaceObservations& observations = observed(result.after.outcome.model);
+      const SurfaceObservations& observations = observed(result.after);
       result.unshared = unshared_causes(terms_, observations.coverage());
       const CandidateSearch search = test(observations, state, result);
       result.settled = names_of(result.hypotheses) == names_of(state.chosen);
@@ -208,7 +235,8 @@ class Diagnoser {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
       try {
-        result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen));
+        result.after = refined(with_terms(result.after.outcome.model.calibration(), state.chosen),
+                               {.detail = estimate::Detail::kModel, .equation_beams = kTestedBeams});
       } catch (const estimate::UncoveredBeams&) {
         if (!reject_new_time_terms(state, before)) throw;
       }
@@ -252,19 +280,22 @@ class Diagnoser {
   }
 
   ProfileComparison left_by(const estimate::Refinement& refinement) const {
-    const SensorModel& model = refinement.outcome.model;
-    return comparisons_.of(
-        model, [&] { return compare_with_simulation(observed(model), settings_.refinement.surfels, 1); });
+    return comparisons_.of(refinement.outcome.model, [&] {
+      return compare_with_simulation(observed(refinement), settings_.refinement.surfels, 1);
+    });
   }
 
-  /// The surfaces of a model, found once for what follows with the same model. Valid until those of another.
-  const SurfaceObservations& observed(const SensorModel& model) const {
+  /// The surfaces that a model was fitted to, for what follows with the same model. Valid until those of
+  /// another.
+  const SurfaceObservations& observed(const estimate::Refinement& fit) const {
+    const SensorModel& model = fit.outcome.model;
     if (!observed_ || observed_->model.names() != model.names() ||
         !std::ranges::equal(observed_->model.values(), model.values())) {
       observed_.reset();
-      observed_.emplace(Observed{
-          .model = model,
-          .observations = {model, inside_, settings_.refinement, settings_.beams, settings_.interrupted}});
+      observed_.emplace(
+          Observed{.model = model,
+                   .observations = {model, inside_, settings_.refinement, settings_.beams,
+                                    settings_.interrupted, SurfacesOf::kRefinement, fit.surfaces.get()}});
     }
     return observed_->observations;
   }
@@ -282,6 +313,7 @@ class Diagnoser {
     SurfaceObservations observations;
   };
   mutable std::optional<Observed> observed_;
+  mutable std::shared_ptr<const estimate::SurfaceMap> surfaces_;  ///< of the last refinement with all beams
   mutable PerModel<ProfileComparison> comparisons_;
 };
 

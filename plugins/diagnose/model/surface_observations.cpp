@@ -2,7 +2,7 @@
 #include "plugins/diagnose/model/surface_observations.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include <crisp/error.hpp>
@@ -34,16 +34,19 @@ Surfels counting(const Surfels& surfels) {
   return some;
 }
 
-Surfels found_by(SurfacesOf of, const quality::BeamsView& beams, const quality::SurfelSettings& settings) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  if (of == SurfacesOf::kSearch) return estimate::patches(settings, 1)->update(beams, kFar);
-  Surfels completed = counting(estimate::patches(settings, 0)->update(beams, kFar));
+/// @param known  final surfaces of a refinement, which are not searched for again; null: none
+Surfels found_by(SurfacesOf of, const Surfels* known, const quality::BeamsView& beams,
+                 const quality::SurfelSettings& settings) {
+  if (of == SurfacesOf::kSearch) return estimate::patches(settings, 1)->update(beams, true);
+  Surfels completed =
+      counting(known != nullptr ? *known : estimate::patches(settings, 0)->update(beams, true));
   quality::refine_all(completed, beams, settings);
   return completed;
 }
 
-Surfels surfaces(SurfacesOf of, const quality::BeamsView& beams, const quality::SurfelSettings& settings) {
-  const Surfels found = found_by(of, beams, settings);
+Surfels surfaces(SurfacesOf of, const Surfels* known, const quality::BeamsView& beams,
+                 const quality::SurfelSettings& settings) {
+  const Surfels found = found_by(of, known, beams, settings);
   if (found.surfels.empty()) {
     throw Error("no beam meets a flat surface, so the sensor model cannot be tested",
                 "reduce `min_cell`, or record in a place with walls");
@@ -55,25 +58,6 @@ bool are_elsewhere(const quality::BeamsView& beams, const quality::BeamsView& be
   return !std::ranges::equal(beams.points.x, before.points.x) ||
          !std::ranges::equal(beams.points.y, before.points.y) ||
          !std::ranges::equal(beams.points.z, before.points.z);
-}
-
-/// Systematic subsample of each surface's beams, with at most about `most` in total.
-Surfels thinned(const Surfels& surfels, std::size_t most) {
-  std::size_t all = 0;
-  for (const quality::Surfel& surfel : surfels.surfels) all += surfel.end - surfel.begin;
-  const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
-  Surfels some;
-  for (quality::Surfel surfel : surfels.surfels) {
-    const auto begin = static_cast<std::uint32_t>(some.members.size());
-    for (std::size_t k = surfel.begin; k < surfel.end; k += stride) {
-      some.members.push_back(surfels.members[k]);
-      some.weights.push_back(surfels.weights[k]);
-    }
-    surfel.begin = begin;
-    surfel.end = static_cast<std::uint32_t>(some.members.size());
-    some.surfels.push_back(surfel);
-  }
-  return some;
 }
 
 }  // namespace
@@ -92,22 +76,26 @@ Coverage coverage_of(const estimate::Sample& sample) {
 
 SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sample sample,
                                          const estimate::RefinementSettings& settings, std::size_t most,
-                                         std::function<bool()> interrupted, SurfacesOf of)
+                                         std::function<bool()> interrupted, SurfacesOf of,
+                                         const estimate::SurfaceMap* known)
     : sample_(std::move(sample)),
       placed_(model, sample_),
       settings_(settings.surfels),
       interrupted_(std::move(interrupted)) {
-  all_ = surfaces(of, placed_.view(), settings_);
+  std::optional<Surfels> final;
+  if (known != nullptr) final = known->of(sample_.beams).surfels;
+  const Surfels* begin = final ? &*final : nullptr;
+  all_ = surfaces(of, begin, placed_.view(), settings_);
   sample_.beams.cos_incidence = estimate::incidences(all_, placed_.view());
   // Terms of the incidence angle move beams, mostly those of grazing incidence, and thereby the surfaces.
   if (estimate::PlacedBeams moved(model, sample_); are_elsewhere(moved.view(), placed_.view())) {
-    all_ = surfaces(of, moved.view(), settings_);
+    all_ = surfaces(of, begin, moved.view(), settings_);
     sample_.beams.cos_incidence = estimate::incidences(all_, moved.view());
     placed_ = estimate::PlacedBeams(model, sample_);
   }
   noise_ = estimate::relative_noise(all_, placed_.view(), sample_.beams, settings_);
   if (!noise_.empty()) quality::refine_all(all_, beams(), settings_);
-  surfels_ = thinned(all_, most);
+  surfels_ = quality::thinned(all_, most);
   coverage_ = coverage_of(sample_);
   shared_ = estimate::shared_errors(sample_, all_, beams(), settings.angle_step);
 }
@@ -118,8 +106,8 @@ quality::NormalEquations SurfaceObservations::equations(const CandidateJacobian&
     if (interrupted_ && interrupted_()) throw Interrupted();
     all(of_surfel...);
   };
-  return quality::normal_equations(thinned(all_, most), beams(), jacobian.parameters(), rows, settings_,
-                                   shared_);
+  return quality::normal_equations(quality::thinned(all_, most), beams(), jacobian.parameters(), rows,
+                                   settings_, shared_);
 }
 
 }  // namespace crisp::diagnose

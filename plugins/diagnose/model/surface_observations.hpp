@@ -26,9 +26,11 @@ class SurfaceObservations {
   /// @param sample  all beams, covered by the encoder readings; their incidence angles are set here
   /// @param most    number of beams on surfels(), evenly subsampled
   /// @param interrupted  cancellation query of equations(), called from several threads
+  /// @param known   surfaces that the model was fitted to, with these beams; null: they are searched for
   SurfaceObservations(const SensorModel& model, estimate::Sample sample,
                       const estimate::RefinementSettings& settings, std::size_t most,
-                      std::function<bool()> interrupted = {}, SurfacesOf of = SurfacesOf::kRefinement);
+                      std::function<bool()> interrupted = {}, SurfacesOf of = SurfacesOf::kRefinement,
+                      const estimate::SurfaceMap* known = nullptr);
 
   const estimate::Sample& sample() const { return sample_; }
   const quality::Surfels& surfels() const { return surfels_; }  ///< with `most` beams

@@ -5,7 +5,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
 #include "pipeline/estimate/flat_surfaces.hpp"
 #include "pipeline/estimate/incidence.hpp"
@@ -35,7 +34,7 @@ struct Reported {
   explicit Reported(const ScannerSettings& scanner)
       : recording(simulate_measurements(scanner, office())), sample(sample_of(recording)) {
     const PlacedBeams placed(SensorModel(recording.truth), sample);
-    surfels = patches({}, 1)->update(placed.view(), std::numeric_limits<double>::infinity());
+    surfels = patches({}, 1)->update(placed.view(), true);
     sample.beams.cos_incidence = incidences(surfels, placed.view());
     noise = relative_noise(surfels, placed.view(), sample.beams, {});
   }
