@@ -126,6 +126,17 @@ class Chooser {
     return chosen;
   }
 
+  /// Whether each of some candidates is determined given the others and those taken. The scales of all lasers
+  /// are not, for example, where the scene's may be another: with them nothing else would be.
+  bool is_determined(const std::vector<std::size_t>& members, const std::vector<std::size_t>& taken) const {
+    return std::ranges::all_of(members, [&](std::size_t one) {
+      std::vector<std::size_t> others = without(members, one);
+      others.insert(others.end(), taken.begin(), taken.end());
+      const auto test = given(others)[one];
+      return test && test->visible > 0;
+    });
+  }
+
   /// The best cause that all lasers share, if it is needed and no part of it is selected.
   ///
   /// @param left  normal equations after eliminate_base()
@@ -143,7 +154,8 @@ class Chooser {
       const bool is_needed_everywhere =
           std::ranges::all_of(members, [&](std::size_t m) { return is_needed(m, one.test); });
       const bool is_large = one.test.bic >= kSmall * rough;
-      if (is_needed_everywhere && is_large && (!best || one.test.bic > best->test.bic)) best = std::move(one);
+      const bool is_better = is_needed_everywhere && is_large && (!best || one.test.bic > best->test.bic);
+      if (is_better && is_determined(members, taken)) best = std::move(one);
     }
     return best;
   }

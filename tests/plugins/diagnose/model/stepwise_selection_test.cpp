@@ -94,5 +94,18 @@ TEST(StepwiseSelection, SelectsWhatARejectedCauseDoesNotExplain) {
   EXPECT_THAT(chosen(kNames, equations, {"laser1.range.scale"}), UnorderedElementsAre("laser2.range.scale"));
 }
 
+/// The lasers' scales cancel one another, and differ by little in what shows.
+TEST(StepwiseSelection, SkipsACauseOfAllLasersThatIsNotDetermined) {
+  const std::vector<std::string> names = {"laser1.range.scale", "laser2.range.scale", "laser3.range.scale",
+                                          "laser1.mirror.cone"};
+  Eigen::MatrixXd does(3, 4);
+  does.col(0) << 1, 0.1, 0;
+  does.col(1) << 1, -0.1, 0;
+  does.col(2) << -2, 0, 0;
+  does.col(3) << 0, 0, 1;
+  const auto equations = equations_of(Eigen::Vector3d(0, 0.1, 1), does, 40'000);
+  EXPECT_THAT(chosen(names, equations), UnorderedElementsAre("laser1.mirror.cone"));
+}
+
 }  // namespace
 }  // namespace crisp
