@@ -21,19 +21,21 @@
 namespace crisp::diagnose {
 namespace {
 
-using Turn = CrossValidator::Score::Turn;
+using Sums = CrossValidator::Score::Sums;
 
 constexpr double kMinTurns = 4;
 constexpr double kMinPieces = 8;
+constexpr std::uint32_t kPiecesPerTurn = 8;
 constexpr double kNarrow = 15 * data::kDegree;  // a quarter of the shortest harmonic's period
 
 /// Turn of the plate and recording of each beam.
 struct Pieces {
   std::vector<std::uint32_t> turn;  ///< from 0, in order of time; no turn spans two recordings
+  std::vector<std::uint32_t> part;  ///< of kPiecesPerTurn of its turn
   std::vector<std::uint32_t> recording;
   bool are_several = false;  ///< more than one recording
 
-  bool is_held_out(std::size_t i) const { return (are_several ? recording[i] : turn[i]) % 2 == 1; }
+  std::uint32_t half(std::size_t i) const { return (are_several ? recording[i] : turn[i]) % 2; }
 };
 
 Pieces pieces_of(const estimate::Sample& sample) {
@@ -53,11 +55,14 @@ Pieces pieces_of(const estimate::Sample& sample) {
     pieces.recording.push_back(recording);
   }
   double piece = 2 * std::numbers::pi;
-  if (way < kMinTurns * piece) piece = std::min(kNarrow, way / kMinPieces * (1 + 1e-9));
+  const bool is_short = way < kMinTurns * piece;
+  if (is_short) piece = std::min(kNarrow, way / kMinPieces * (1 + 1e-9));
   std::uint32_t before = 0;  // recording borders so far; each ends a turn
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (i > 0 && pieces.recording[i] != pieces.recording[i - 1]) ++before;
-    pieces.turn.push_back(before + (piece > 0 ? static_cast<std::uint32_t>(turned[i] / piece) : 0));
+    const double turns = piece > 0 ? turned[i] / piece : 0;
+    pieces.turn.push_back(before + static_cast<std::uint32_t>(turns));
+    pieces.part.push_back(is_short ? 0 : static_cast<std::uint32_t>(kPiecesPerTurn * turns) % kPiecesPerTurn);
   }
   return pieces;
 }
@@ -75,16 +80,16 @@ class ViewMeans {
     }
   }
 
-  /// Adds one beam's contribution to its turn's score.
-  void add(const quality::SurfelResidual& r, std::uint32_t view, double noise, Turn& turn) const {
+  /// Adds one beam's contribution to its piece's sums.
+  void add(const quality::SurfelResidual& r, std::uint32_t view, double noise, Sums& sums) const {
     const double laser = lasers_.at(view / 2).value();
     const double spread = r.spread * noise;
-    turn.weight += r.weight;
-    turn.squares += r.weight * r.distance * r.distance;
-    turn.likelihood -= r.weight * (std::pow(r.distance / spread, 2) / 2 +
+    sums.weight += r.weight;
+    sums.squares += r.weight * r.distance * r.distance;
+    sums.likelihood -= r.weight * (std::pow(r.distance / spread, 2) / 2 +
                                    std::log(spread * std::sqrt(2 * std::numbers::pi)));
-    turn.lasers += r.weight * laser * laser;
-    turn.sides += r.weight * std::pow(sides_.at(view).value() - laser, 2);
+    sums.lasers += r.weight * laser * laser;
+    sums.sides += r.weight * std::pow(sides_.at(view).value() - laser, 2);
   }
 
  private:
@@ -92,12 +97,12 @@ class ViewMeans {
   std::map<std::uint32_t, statistics::Mean> sides_;
 };
 
-double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn, double Turn::*part) {
+double ratio(const std::vector<Sums>& pieces, const std::vector<std::size_t>& drawn, double Sums::*part) {
   double sum = 0;
   double weight = 0;
-  for (const std::size_t t : drawn) {
-    sum += turns[t].*part;
-    weight += turns[t].weight;
+  for (const std::size_t p : drawn) {
+    sum += pieces[p].*part;
+    weight += pieces[p].weight;
   }
   return weight > 0 ? sum / weight : 0;
 }
@@ -105,33 +110,85 @@ double ratio(const std::vector<Turn>& turns, const std::vector<std::size_t>& dra
 struct Metric {
   const char* name;
   const char* unit;
-  double Turn::*part;
+  double Sums::*part;
   bool is_square;
 };
 constexpr std::array kMetrics = {
-    Metric{"cloud thickness", "m", &Turn::squares, true},
-    Metric{"disagreement of lasers", "m", &Turn::lasers, true},
-    Metric{"disagreement of front and back", "m", &Turn::sides, true},
-    Metric{CrossValidator::kLikelihood, "nat", &Turn::likelihood, false},
-    Metric{"RQE", "nat", &Turn::entropy, false},
+    Metric{"cloud thickness", "m", &Sums::squares, true},
+    Metric{"disagreement of lasers", "m", &Sums::lasers, true},
+    Metric{"disagreement of front and back", "m", &Sums::sides, true},
+    Metric{CrossValidator::kLikelihood, "nat", &Sums::likelihood, false},
 };
+constexpr Metric kEntropy = {"RQE", "nat", &Sums::entropy, false};
 
-double value_of(const Metric& metric, const std::vector<Turn>& turns, const std::vector<std::size_t>& drawn) {
-  const double mean = ratio(turns, drawn, metric.part);
+double value_of(const Metric& metric, const std::vector<Sums>& pieces,
+                const std::vector<std::size_t>& drawn) {
+  const double mean = ratio(pieces, drawn, metric.part);
   return metric.is_square ? std::sqrt(std::max(0.0, mean)) : mean;
 }
 
+/// Pieces of a recording, drawn with replacement many times.
+class Resampling {
+ public:
+  /// @param pieces  those without weight are left out
+  explicit Resampling(const std::vector<Sums>& pieces) {
+    constexpr std::size_t kDraws = 1000;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      if (pieces[p].weight > 0) all_.push_back(p);
+    }
+    if (!is_possible()) return;
+    // A fixed seed: every metric gets the same bootstrap samples.
+    statistics::RandomStream random(all_.size(), "turns");
+    draws_.assign(kDraws, std::vector<std::size_t>(all_.size()));
+    for (auto& drawn : draws_) {
+      for (auto& piece : drawn) piece = all_[random.below(all_.size())];
+    }
+  }
+
+  bool is_possible() const { return all_.size() > 1; }
+
+  Gain gain(const Metric& metric, const std::vector<Sums>& before, const std::vector<Sums>& after) const {
+    const auto count = static_cast<double>(all_.size());
+    const double wider = quantile(boost::math::students_t(count - 1), 0.975) * std::sqrt(count / (count - 1));
+    const double first = value_of(metric, before, all_);
+    const double second = value_of(metric, after, all_);
+    double squares = 0;
+    for (const auto& drawn : draws_) {
+      const double change = value_of(metric, after, drawn) - value_of(metric, before, drawn);
+      squares += std::pow(change - (second - first), 2);
+    }
+    const double half = wider * std::sqrt(squares / static_cast<double>(draws_.size()));
+    return {.metric = metric.name,
+            .unit = metric.unit,
+            .before = first,
+            .after = second,
+            .ci95 = {second - first - half, second - first + half}};
+  }
+
+ private:
+  std::vector<std::size_t> all_;
+  std::vector<std::vector<std::size_t>> draws_;
+};
+
 }  // namespace
 
-Halves halves_of(const estimate::Sample& sample) {
+Halves halves_of(const estimate::Sample& sample, std::uint32_t held_out) {
   const Pieces pieces = pieces_of(sample);
+  const auto is_held_out = [&](std::size_t i) { return pieces.half(i) == held_out; };
   Halves halves;
-  halves.fitted = estimate::select(sample, [&](std::size_t i) { return !pieces.is_held_out(i); });
-  halves.held_out = estimate::select(sample, [&](std::size_t i) { return pieces.is_held_out(i); });
+  halves.fitted = estimate::select(sample, [&](std::size_t i) { return !is_held_out(i); });
+  halves.held_out = estimate::select(sample, is_held_out);
   for (std::size_t i = 0; i < pieces.turn.size(); ++i) {
-    if (pieces.is_held_out(i)) halves.turn.push_back(pieces.turn[i]);
+    if (!is_held_out(i)) continue;
+    halves.turn.push_back(pieces.turn[i]);
+    halves.piece.push_back(kPiecesPerTurn * pieces.turn[i] + pieces.part[i]);
   }
   return halves;
+}
+
+void CrossValidator::Score::append(const Score& other) {
+  pieces.insert(pieces.end(), other.pieces.begin(), other.pieces.end());
+  turns.insert(turns.end(), other.turns.begin(), other.turns.end());
 }
 
 CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser,
@@ -161,7 +218,9 @@ CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
   placed.align_with(*reference_, halves_.held_out);
   const quality::BeamsView beams = placed.view(given_noise_);
   Score score;
-  score.turns.resize(halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1});
+  const std::size_t turns = halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1};
+  score.turns.resize(turns);
+  score.pieces.resize(kPiecesPerTurn * turns);
   std::vector<Vectors> clouds(score.turns.size());
   for (const quality::Surfel& surfel : surfels_.surfels) {
     const auto members = surfels_.beams_of(surfel);
@@ -170,7 +229,8 @@ CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
     for (std::size_t k = 0; k < members.size(); ++k) {
       const std::size_t i = members[k];
       if (residuals[k].weight == 0) continue;
-      views.add(residuals[k], beams.views[i], noise_, score.turns[halves_.turn[i]]);
+      views.add(residuals[k], beams.views[i], noise_, score.pieces[halves_.piece[i]]);
+      score.turns[halves_.turn[i]].weight += residuals[k].weight;
       Vectors& cloud = clouds[halves_.turn[i]];
       cloud.x.push_back(beams.points.x[i]);
       cloud.y.push_back(beams.points.y[i]);
@@ -186,37 +246,12 @@ CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
 }
 
 std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after) {
-  constexpr std::size_t kDraws = 1000;
-  const std::size_t n = before.turns.size();
-  std::vector<std::size_t> all;
-  for (std::size_t t = 0; t < n; ++t) {
-    if (before.turns[t].weight > 0) all.push_back(t);
-  }
+  const Resampling pieces(before.pieces);
+  const Resampling turns(before.turns);
   std::vector<Gain> gains;
-  if (all.size() < 2) return gains;
-  // A fixed seed: every metric gets the same bootstrap samples.
-  statistics::RandomStream random(all.size(), "turns");
-  std::vector<std::vector<std::size_t>> draws(kDraws, std::vector<std::size_t>(all.size()));
-  for (auto& drawn : draws) {
-    for (auto& turn : drawn) turn = all[random.below(all.size())];
-  }
-  const auto count = static_cast<double>(all.size());
-  const double wider = quantile(boost::math::students_t(count - 1), 0.975) * std::sqrt(count / (count - 1));
-  for (const Metric& metric : kMetrics) {
-    const double first = value_of(metric, before.turns, all);
-    const double second = value_of(metric, after.turns, all);
-    double squares = 0;
-    for (const auto& drawn : draws) {
-      const double change = value_of(metric, after.turns, drawn) - value_of(metric, before.turns, drawn);
-      squares += std::pow(change - (second - first), 2);
-    }
-    const double half = wider * std::sqrt(squares / kDraws);
-    gains.push_back({.metric = metric.name,
-                     .unit = metric.unit,
-                     .before = first,
-                     .after = second,
-                     .ci95 = {second - first - half, second - first + half}});
-  }
+  if (!pieces.is_possible()) return gains;
+  for (const Metric& metric : kMetrics) gains.push_back(pieces.gain(metric, before.pieces, after.pieces));
+  if (turns.is_possible()) gains.push_back(turns.gain(kEntropy, before.turns, after.turns));
   return gains;
 }
 

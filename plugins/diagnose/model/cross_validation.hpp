@@ -17,13 +17,16 @@ namespace crisp::diagnose {
 struct Halves {
   estimate::Sample fitted;
   estimate::Sample held_out;
-  std::vector<std::uint32_t> turn;  ///< turn of each held-out beam, from 0
+  std::vector<std::uint32_t> turn;   ///< turn of each held-out beam, from 0
+  std::vector<std::uint32_t> piece;  ///< and its eighth of a turn, or its turn where these are shorter
 };
 
 /// Splits by recordings if there are several, otherwise by turns of the plate. A recording of fewer than four
 /// turns is split by pieces of 15°, or by eighths if these are shorter: half of a turn alone leaves the
 /// harmonics of the plate angle open.
-Halves halves_of(const estimate::Sample& sample);
+///
+/// @param held_out  which half is held out, 0 or 1
+Halves halves_of(const estimate::Sample& sample, std::uint32_t held_out = 1);
 
 /// Held-out cross-validation of sensor models by the distances of beams to surfaces. The beams and their
 /// surfaces are selected once, with a model that has none of the terms under test. Rigid motions of a whole
@@ -34,22 +37,27 @@ class CrossValidator {
 
   const estimate::Sample& fitted() const { return halves_.fitted; }
 
-  /// Held-out score of one model, per turn.
+  /// Held-out score of one model: sums over the beams of each piece, and of each turn.
   struct Score {
-    struct Turn {
+    struct Sums {
       double weight = 0;
       double squares = 0;     ///< [m²] weighted squared distances to the surfaces
       double likelihood = 0;  ///< [nat] sum of the log-likelihoods
       double lasers = 0;      ///< [m²] weighted squares of the lasers' means about their surface's mean
       double sides = 0;       ///< [m²] weighted squares of front and back means about their laser's mean
-      double entropy = 0;     ///< [nat] RQE of the turn's cloud
+      double entropy = 0;     ///< [nat] RQE of the turn's cloud; of turns only
     };
-    std::vector<Turn> turns;
+    std::vector<Sums> pieces;
+    std::vector<Sums> turns;  ///< weight and entropy only
+
+    /// Joins the score of the other half, held out by another validator.
+    void append(const Score& other);
   };
   Score score(const SensorModel& model) const;
 
-  /// Differences between two scores, with confidence intervals of a bootstrap over turns. Student's t widens
-  /// the intervals for the small number of turns.
+  /// Differences between two scores, with confidence intervals of a bootstrap over pieces; over turns for the
+  /// RQE. Student's t widens the intervals for a small number of them. A short recording has a few turns only
+  /// to hold out, and what settles or warms up is in one of them.
   static constexpr const char* kLikelihood = "log-likelihood a measurement";
   static std::vector<Gain> gains(const Score& before, const Score& after);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -82,15 +83,23 @@ class Diagnoser {
     return propose_recordings(fit.outcome.model, base_of(fit), observed(fit), terms_, settings_);
   }
 
+  CrossValidator validator_of(const SensorModel& chooser, std::uint32_t held_out) const {
+    return {halves_of(inside_, held_out), chooser, settings_.refinement.surfels};
+  }
+
   void accept(Diagnosis& result) {
     report(0.8, "cross-validating on held-out turns");
-    const CrossValidator validator(halves_of(inside_), result.before.outcome.model,
-                                   settings_.refinement.surfels);
+    const std::array validators = {validator_of(result.before.outcome.model, 0),
+                                   validator_of(result.before.outcome.model, 1)};
     PerModel<CrossValidator::Score> scores;
     const HeldOutScore held_out = [&](const Calibration& start) {
       return scores.of(SensorModel(start, terms_), [&] {
-        const auto fit = refined_with(validator.fitted(), start, {.detail = estimate::Detail::kModel});
-        return validator.score(fit.outcome.model);
+        CrossValidator::Score score;
+        for (const CrossValidator& validator : validators) {
+          const auto fit = refined_with(validator.fitted(), start, {.detail = estimate::Detail::kModel});
+          score.append(validator.score(fit.outcome.model));
+        }
+        return score;
       });
     };
     const CrossValidator::Score plain = held_out(result.before.outcome.model.calibration());

@@ -9,7 +9,7 @@
 
 namespace crisp::diagnose {
 
-/// Held-out score of a calibration with its terms, fitted to the training turns alone.
+/// Held-out score of a calibration with its terms: of either half of the turns, fitted to the other alone.
 using HeldOutScore = std::function<CrossValidator::Score(const Calibration& start)>;
 
 /// Accepts hypotheses that generalize to held-out turns (forward cross-validation): adds them one by one,

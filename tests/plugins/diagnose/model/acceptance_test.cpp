@@ -55,8 +55,8 @@ Diagnosis judged(double p_value_with) {
   Diagnosis diagnosis = two_small_offsets();
   const auto score = [](const Calibration& calibration) {
     CrossValidator::Score score;
-    for (int turn = 0; turn < 4; ++turn)
-      score.turns.push_back({.weight = 1, .likelihood = static_cast<double>(terms_of(calibration))});
+    for (int piece = 0; piece < 4; ++piece)
+      score.pieces.push_back({.weight = 1, .likelihood = static_cast<double>(terms_of(calibration))});
     return score;
   };
   const AcceptanceFits fits{.held_out = score, .refit = fitted, .compare = [&](const Refinement& fit) {

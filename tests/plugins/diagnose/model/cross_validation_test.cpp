@@ -24,6 +24,14 @@ TEST(CrossValidator, HalvesShareNoTurnAndNoBeamIsLost) {
   EXPECT_GT(halves.held_out.beams.size(), all.beams.size() / 4);
   EXPECT_EQ(halves.turn.size(), halves.held_out.beams.size());
   EXPECT_GE(*std::ranges::max_element(halves.turn), 1U);
+  ASSERT_EQ(halves.piece.size(), halves.turn.size());
+  for (std::size_t i = 0; i < halves.turn.size(); ++i) ASSERT_EQ(halves.piece[i] / 8, halves.turn[i]);
+  const std::set<std::uint32_t> pieces(halves.piece.begin(), halves.piece.end());
+  const std::set<std::uint32_t> turns(halves.turn.begin(), halves.turn.end());
+  EXPECT_GE(pieces.size(), 7 * turns.size()) << "the first and the last turn may be parts of one";
+  const Halves others = halves_of(all, 0);
+  EXPECT_EQ(others.held_out.beams.time, halves.fitted.beams.time);
+  EXPECT_EQ(others.fitted.beams.time, halves.held_out.beams.time);
 }
 
 TEST(CrossValidator, HoldsOutEveryOtherOfSeveralRecordings) {
@@ -50,6 +58,22 @@ TEST(CrossValidator, EstimatesTheGainOfAnInjectedChange) {
   EXPECT_GT(likelihood->ci95[0], 0);
   const auto lasers = std::ranges::find(gains, "disagreement of lasers", &Gain::metric);
   EXPECT_GT(lasers->before, 5 * lasers->after) << "10 mm of one laser against two";
+}
+
+/// A range that drifts off in the recording's first second only gains in one turn of several.
+TEST(CrossValidator, HasAnIntervalWithoutZeroForAGainInOneTurn) {
+  CrossValidator::Score before;
+  CrossValidator::Score after;
+  for (int piece = 0; piece < 32; ++piece) {
+    const double gain = piece < 8 ? 40 + piece % 3 : piece % 2;
+    before.pieces.push_back({.weight = 1000, .likelihood = 0});
+    after.pieces.push_back({.weight = 1000, .likelihood = gain});
+  }
+  const auto gains = CrossValidator::gains(before, after);
+  const auto likelihood = std::ranges::find(gains, CrossValidator::kLikelihood, &Gain::metric);
+  ASSERT_NE(likelihood, gains.end());
+  EXPECT_GT(likelihood->ci95[0], 0);
+  EXPECT_LT(likelihood->ci95[0], 0.5 * likelihood->after) << "turns differ";
 }
 
 TEST(CrossValidator, EstimatesNoGainWithoutAChange) {
