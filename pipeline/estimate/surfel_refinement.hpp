@@ -16,9 +16,9 @@
 
 namespace crisp::estimate {
 
-/// What a refinement gives besides the model, each with what is before it.
+/// What a refinement computes; each value includes those before it.
 enum class Detail {
-  kModel,           ///< its covariance takes the beams' errors for independent
+  kModel,           ///< the model; its covariance takes the beams' errors for independent
   kStandardErrors,  ///< errors that beams share are in the covariance
   kViews            ///< `scatter`, `views` and their caveats
 };

@@ -206,7 +206,7 @@ class Diagnoser {
     return search;
   }
 
-  /// Refines the extended model with all that is wanted of it, as those before it were for tests only.
+  /// Refines the extended model once more, with all beams and full standard errors: extend() leaves both out.
   void complete(Diagnosis& result) const {
     result.after =
         result.hypotheses.empty() ? result.before : refined(result.after.outcome.model.calibration());
