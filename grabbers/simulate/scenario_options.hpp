@@ -39,18 +39,19 @@ template <class S, class Way>
 void describe_truth(StageDescription<S>& d, Way way) {
   d.option("calibration", way, &TruthChoice::calibration_file,
            "true calibration; by default it is drawn around nominal");
+  d.group("nominal_errors", "largest departures of the drawn truth from nominal, without a `calibration`");
   const auto off = &TruthChoice::nominal_errors;
-  d.option("tau_off", way, off, &NominalErrors::tau, "largest departure of a drawn τ from nominal")
+  d.option("nominal_errors.tau", way, off, &NominalErrors::tau, "largest departure of τ")
       .unit("m")
       .range(0, 1);
-  d.option("alpha_off", way, off, &NominalErrors::alpha, "largest departure of a drawn α from nominal")
+  d.option("nominal_errors.alpha", way, off, &NominalErrors::alpha, "largest departure of α")
       .unit("rad")
       .range(0, 3.2);
-  d.option("lambda_off", way, off, &NominalErrors::lambda,
-           "largest departure of a drawn λ from nominal; the first laser's is the gauge and stays")
+  d.option("nominal_errors.lambda", way, off, &NominalErrors::lambda,
+           "largest departure of λ; the first laser's is the gauge and stays")
       .unit("rad")
       .range(0, 3.2);
-  d.option("eta_off", way, off, &NominalErrors::eta, "largest departure of a drawn η from nominal")
+  d.option("nominal_errors.eta", way, off, &NominalErrors::eta, "largest departure of η")
       .unit("s")
       .range(0, 1);
   d.option(
@@ -61,57 +62,65 @@ void describe_truth(StageDescription<S>& d, Way way) {
 /// @param way  to a MotionSettings
 template <class S, class Way>
 void describe_motion(StageDescription<S>& d, Way way) {
-  d.option("motion", way, &MotionSettings::kind, "how the plate turns")
+  d.group("motion", "how the plate turns");
+  d.option("motion.kind", way, &MotionSettings::kind, "course of its rate")
       .choices({{"constant", MotionKind::constant},
                 {"varying", MotionKind::varying},
                 {"reversal", MotionKind::reversal},
                 {"stop_and_go", MotionKind::stop_and_go}});
-  d.option("min_rate", way, &MotionSettings::min_rate, "lowest rate of a varying motion")
+  d.option("motion.min_rate", way, &MotionSettings::min_rate, "lowest rate of a varying motion")
       .unit("Hz")
       .range(-50, 50);
-  d.option("max_rate", way, &MotionSettings::max_rate, "highest rate, or the constant rate")
+  d.option("motion.max_rate", way, &MotionSettings::max_rate, "highest rate, or the constant rate")
       .unit("Hz")
       .range(-50, 50);
-  d.option("change_time", way, &MotionSettings::change_time, "duration of a change of the rate")
+  d.option("motion.change_time", way, &MotionSettings::change_time, "duration of a change of the rate")
       .unit("s")
       .range(0.01, 1e4);
-  d.option("hold_time", way, &MotionSettings::hold_time,
+  d.option("motion.hold_time", way, &MotionSettings::hold_time,
            "duration for which reversal and stop_and_go hold a rate")
       .unit("s")
       .range(0, 1e4);
 }
 
+/// Those of the group that describe_field() declares.
+///
 /// @param way  to a KindChoice
 template <class S, class Way>
 void describe_kinds(StageDescription<S>& d, Way way) {
   d.option(
-      "lasers", way, &KindChoice::lasers,
+      "lasers.kinds", way, &KindChoice::lasers,
       "lasers of another kind: `{laser2: {first_angle: -5deg, last_angle: 185deg, step: 0.25deg, mirror_frequency: 25Hz}}`; missing keys are as for all");
 }
 
 /// @param way  to a ScannerSettings
 template <class S, class Way>
 void describe_field(StageDescription<S>& d, Way way) {
+  d.group("lasers", "the lasers: ranges, field of view and mirror");
   const auto field = &ScannerSettings::field;
   const auto mirror = &ScannerSettings::mirror;
-  d.option("max_range", way, &ScannerSettings::range, &RangeSettings::max_distance,
+  d.option("lasers.max_range", way, &ScannerSettings::range, &RangeSettings::max_distance,
            "largest range with an echo")
       .unit("m")
       .range(0.1, 65);
-  d.option("first_angle", way, field, &FieldOfView::first, "reported angle of the first beam").unit("rad");
-  d.option("last_angle", way, field, &FieldOfView::last, "reported angle of the last beam").unit("rad");
-  d.option("step", way, field, &FieldOfView::step, "angle between beams").unit("rad").range(1e-4, 1);
-  d.option("mirror_frequency", way, mirror, &MirrorSettings::frequency, "nominal rate of the mirrors")
+  d.option("lasers.first_angle", way, field, &FieldOfView::first, "reported angle of the first beam")
+      .unit("rad");
+  d.option("lasers.last_angle", way, field, &FieldOfView::last, "reported angle of the last beam")
+      .unit("rad");
+  d.option("lasers.step", way, field, &FieldOfView::step, "angle between beams").unit("rad").range(1e-4, 1);
+  d.option("lasers.mirror_frequency", way, mirror, &MirrorSettings::frequency, "nominal rate of the mirrors")
       .unit("Hz")
       .range(1, 1000);
-  d.option("mirror_slowest", way, mirror, &MirrorSettings::slowest,
+  d.option("lasers.mirror_slowest", way, mirror, &MirrorSettings::slowest,
            "largest excess of a mirror's mean period over nominal, which is drawn")
       .unit("1")
       .range(0, 0.1);
-  d.option("mirror_wander", way, mirror, &MirrorSettings::wander, "largest slow deviation of the period")
+  d.option("lasers.mirror_wander", way, mirror, &MirrorSettings::wander,
+           "largest slow deviation of the period")
       .unit("1")
       .range(0, 0.1);
-  d.option("mirror_jitter", way, mirror, &MirrorSettings::jitter, "standard deviation of each single period")
+  d.option("lasers.mirror_jitter", way, mirror, &MirrorSettings::jitter,
+           "standard deviation of each single period")
       .unit("1")
       .range(0, 0.01);
 }

@@ -28,6 +28,13 @@ struct StageOption {
   std::string option;
 };
 
+/// What such an option of a command is declared by.
+struct StageFlag {
+  std::string option;     ///< of the stage, "motion.kind"
+  std::string help;       ///< in half a sentence
+  std::string name = {};  ///< of the flag, "motion"; empty: the option's
+};
+
 /// Everything that can stand on the command line, and where CLI11 puts it.
 struct CommandLine {
   CLI::App app{"Self-calibration and point clouds for 2D lasers on a spinning plate.", "crisp"};
@@ -117,7 +124,7 @@ struct CommandLine {
                         const std::filesystem::path& output, const std::string& threads, RunRequest& request);
   /// Options of the one stage of a pipeline, as options of the command.
   void add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
-                         std::initializer_list<std::pair<std::string, std::string>> names_and_help);
+                         std::initializer_list<StageFlag> flags);
   /// A study can be divided, and is merged then.
   static void add_parts(CLI::App* to, const std::string& stage, StudyRequest& request);
   /// Options of a study of a recording that is planned.

@@ -40,26 +40,26 @@ void CommandLine::add_own_pipeline(CLI::App* to, const char* name, std::string_v
   add_run_options(to, threads, request);
 }
 
-void CommandLine::add_stage_options(
-    CLI::App* to, const std::string& stage, RunRequest& request,
-    std::initializer_list<std::pair<std::string, std::string>> names_and_help) {
-  const auto add = [&](std::string_view name, const std::string& help) {
+void CommandLine::add_stage_options(CLI::App* to, const std::string& stage, RunRequest& request,
+                                    std::initializer_list<StageFlag> flags) {
+  const auto add = [&](std::string_view name, const std::string& option, const std::string& help) {
     std::string flag = "--" + std::string(name);
     std::ranges::replace(flag, '_', '-');
-    stage_options.push_back({.command = to, .flag = flag, .stage = stage, .option = std::string(name)});
-    std::string set = stage;
-    set.append(".").append(name).append("=");
+    stage_options.push_back({.command = to, .flag = flag, .stage = stage, .option = option});
+    const std::string set = stage + "." + option + "=";
     return to
         ->add_option_function<std::string>(
             flag, [set, &request](const std::string& value) { request.arguments.set.push_back(set + value); },
             help)
         ->type_name("VALUE");
   };
-  for (const auto& [name, help] : names_and_help) {
-    add(name, help);
+  for (const auto& [option, help, name] : flags) {
+    const std::string& flag = name.empty() ? option : name;
+    add(flag, option, help);
     for (const files::RenamedName& old : files::renamed_names()) {
-      if (old.kind == files::RenamedName::Kind::option && old.owner == stage && old.name == name)
-        add(old.old_name, help)->group("");  // accepted, and not listed
+      const bool is_old = old.kind == files::RenamedName::Kind::option && old.owner == stage &&
+                          old.name == option && old.old_name != flag;
+      if (is_old) add(old.old_name, std::string(old.old_name), help)->group("");  // accepted, and not listed
     }
   }
 }
@@ -84,15 +84,16 @@ void CommandLine::add_studies() {
 }
 
 void CommandLine::add_planned_recording(CLI::App* to, const std::string& stage, RunRequest& request) {
-  add_stage_options(to, stage, request,
-                    {{"scene", kScenes},
-                     {"scene_file", "Scene file in YAML"},
-                     {"duration", "Duration of the recording: 10s"},
-                     {"motion", "Motion of the plate: constant, varying, reversal, stop_and_go"},
-                     {"min_rate", "Lowest rate of a varying motion: 0Hz"},
-                     {"max_rate", "Highest rate, or the constant rate: 2Hz"},
-                     {"noise", "Standard deviation of a range: 12mm"},
-                     {"calibration", "Calibration of the scanner, instead of the nominal values"}});
+  add_stage_options(
+      to, stage, request,
+      {{"scene", kScenes},
+       {"scene_file", "Scene file in YAML"},
+       {"duration", "Duration of the recording: 10s"},
+       {"motion.kind", "Motion of the plate: constant, varying, reversal, stop_and_go", "motion"},
+       {"motion.min_rate", "Lowest rate of a varying motion: 0Hz", "min_rate"},
+       {"motion.max_rate", "Highest rate, or the constant rate: 2Hz", "max_rate"},
+       {"noise", "Standard deviation of a range: 12mm"},
+       {"calibration", "Calibration of the scanner, instead of the nominal values"}});
 }
 
 void CommandLine::add_bound() {
@@ -148,10 +149,11 @@ void CommandLine::add_emulate() {
       "emulate", "Emulate a simulated scanner's lasers and plate, at 127.0.0.1 or the rig's addresses");
   add_own_pipeline(emulate_app, "emulate.yaml", kEmulatePipeline, "out/emulate", "--threads", emulate);
   add_rig(emulate_app, emulate.arguments);
-  add_stage_options(emulate_app, "grabber.simulate", emulate,
-                    {{"duration", "Duration: 60s"},
-                     {"scene", kScenes},
-                     {"motion", "Motion of the plate: constant, varying, reversal, stop_and_go"}});
+  add_stage_options(
+      emulate_app, "grabber.simulate", emulate,
+      {{"duration", "Duration: 60s"},
+       {"scene", kScenes},
+       {"motion.kind", "Motion of the plate: constant, varying, reversal, stop_and_go", "motion"}});
   add_stage_options(emulate_app, "emulate.rig", emulate,
                     {{"speed", "Speed relative to real time; 0: as fast as the clients read"},
                      {"plate_to", "Destination of the plate's datagrams: 127.0.0.1:4000"}});

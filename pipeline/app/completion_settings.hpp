@@ -9,7 +9,7 @@
 
 namespace crisp::app {
 
-/// What can stand behind --set: "duration=", "grabber.simulate.motion=constant" for each choice that an
+/// What can stand behind --set: "duration=", "grabber.simulate.motion.kind=constant" for each choice that an
 /// option has.
 /// @param pipeline  whose stages are meant, by their tags, and its variables; empty, or one that cannot be
 /// read:

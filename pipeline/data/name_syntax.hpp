@@ -13,6 +13,13 @@ inline bool is_plain_name(std::string_view name) {
   });
 }
 
+/// Whether it is plain names with dots between them, or one alone: "links.laser.delay".
+inline bool is_dotted_name(std::string_view name) {
+  const auto dot = name.find('.');
+  if (dot == std::string_view::npos) return is_plain_name(name);
+  return is_plain_name(name.substr(0, dot)) && is_dotted_name(name.substr(dot + 1));
+}
+
 /// Whether it is a symbol, in which case capitals differ from others: "P".
 inline bool is_symbol(std::string_view name) {
   return !name.empty() && std::ranges::all_of(name, [](char c) {

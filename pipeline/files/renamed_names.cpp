@@ -5,6 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 namespace crisp::files {
 namespace {
@@ -30,11 +31,9 @@ constexpr std::array kRenamed = {
     RenamedName{Kind::option, "grabber.capture", "longest_wait", "max_wait"},
     RenamedName{Kind::option, "grabber.live", "longest_pause", "max_reconnect_delay"},
     RenamedName{Kind::option, "grabber.sick", "longest_pause", "max_reconnect_delay"},
-    RenamedName{Kind::option, "grabber.simulate", "reach", "max_range"},
     RenamedName{Kind::option, "study.basin", "starts_a_recording", "starts_per_recording"},
     RenamedName{Kind::option, "study.basin", "tau_least", "min_tau"},
     RenamedName{Kind::option, "study.basin", "tau_most", "max_tau"},
-    RenamedName{Kind::option, "study.bound", "reach", "max_range"},
     RenamedName{Kind::option, "write.capture", "most_bytes", "max_bytes"},
     RenamedName{Kind::option, "write.capture", "most_seconds", "max_duration"},
     RenamedName{Kind::key, "calibration", "doubts", "caveats"},
@@ -46,6 +45,78 @@ constexpr std::array kRenamed = {
     RenamedName{Kind::key, "diagnosis", "told_apart_by", "resolvable_by"},
     RenamedName{Kind::key, "summary", "doubts", "caveats"},
 };
+
+/// Options of a simulated recording, which are in groups today.
+struct Regrouped {
+  std::string_view old_name;
+  std::string_view name;
+};
+
+constexpr std::array kMotion = {
+    Regrouped{"motion", "motion.kind"},         Regrouped{"min_rate", "motion.min_rate"},
+    Regrouped{"max_rate", "motion.max_rate"},   Regrouped{"change_time", "motion.change_time"},
+    Regrouped{"hold_time", "motion.hold_time"},
+};
+
+constexpr std::array kScanner = {
+    Regrouped{"tau_off", "nominal_errors.tau"},
+    Regrouped{"alpha_off", "nominal_errors.alpha"},
+    Regrouped{"lambda_off", "nominal_errors.lambda"},
+    Regrouped{"eta_off", "nominal_errors.eta"},
+    Regrouped{"reach", "lasers.max_range"},
+    Regrouped{"max_range", "lasers.max_range"},
+    Regrouped{"first_angle", "lasers.first_angle"},
+    Regrouped{"last_angle", "lasers.last_angle"},
+    Regrouped{"step", "lasers.step"},
+    Regrouped{"mirror_frequency", "lasers.mirror_frequency"},
+    Regrouped{"mirror_slowest", "lasers.mirror_slowest"},
+    Regrouped{"mirror_wander", "lasers.mirror_wander"},
+    Regrouped{"mirror_jitter", "lasers.mirror_jitter"},
+    Regrouped{"lasers", "lasers.kinds"},
+};
+
+constexpr std::array kRecording = {
+    Regrouped{"plate_frequency", "encoder.frequency"},
+    Regrouped{"sigma", "lasers.sigma"},
+    Regrouped{"quantum", "lasers.quantum"},
+    Regrouped{"language", "telegrams.language"},
+    Regrouped{"remission", "telegrams.remission"},
+    Regrouped{"handover", "telegrams.handover"},
+    Regrouped{"handover_jitter", "telegrams.handover_jitter"},
+    Regrouped{"settling_scans", "telegrams.settling_scans"},
+    Regrouped{"stamp_lags", "clocks.stamp_lags"},
+    Regrouped{"clock_skew", "clocks.skew"},
+    Regrouped{"clock_drift", "clocks.drift"},
+    Regrouped{"laser_delay", "links.laser.delay"},
+    Regrouped{"laser_jitter", "links.laser.jitter"},
+    Regrouped{"laser_stall_rate", "links.laser.stall_rate"},
+    Regrouped{"laser_stall_time", "links.laser.stall_time"},
+    Regrouped{"plate_delay", "links.plate.delay"},
+    Regrouped{"plate_jitter", "links.plate.jitter"},
+    Regrouped{"plate_stall_rate", "links.plate.stall_rate"},
+    Regrouped{"plate_stall_time", "links.plate.stall_time"},
+    Regrouped{"lost_scans", "faults.lost_scans"},
+    Regrouped{"lost_readings", "faults.lost_readings"},
+    Regrouped{"silences", "faults.silences"},
+    Regrouped{"restarts", "faults.restarts"},
+    Regrouped{"lost_frames", "faults.lost_frames"},
+    Regrouped{"repeated_frames", "faults.repeated_frames"},
+    Regrouped{"damaged_frames", "faults.damaged_frames"},
+};
+
+std::vector<RenamedName> all_renamed() {
+  std::vector<RenamedName> all(kRenamed.begin(), kRenamed.end());
+  const auto add = [&all](std::string_view owner, std::span<const Regrouped> options) {
+    for (const auto& [old_name, name] : options) all.push_back({Kind::option, owner, old_name, name});
+  };
+  for (const char* owner : {"grabber.simulate", "study.bound", "study.detection"}) {
+    add(owner, kMotion);
+    add(owner, kScanner);
+  }
+  for (const char* owner : {"study.basin", "study.monte_carlo"}) add(owner, kMotion);
+  add("grabber.simulate", kRecording);
+  return all;
+}
 
 void rename_in(YamlNode& node, std::string_view owner, std::set<std::string>& reported,
                const OldNameSink& warn) {
@@ -61,13 +132,17 @@ void rename_in(YamlNode& node, std::string_view owner, std::set<std::string>& re
 
 }  // namespace
 
-std::span<const RenamedName> renamed_names() { return kRenamed; }
+std::span<const RenamedName> renamed_names() {
+  static const std::vector<RenamedName> all = all_renamed();
+  return all;
+}
 
 std::string current_name(Kind kind, std::string_view owner, std::string_view name) {
-  const auto* const found = std::ranges::find_if(kRenamed, [&](const RenamedName& one) {
+  const auto known = renamed_names();
+  const auto found = std::ranges::find_if(known, [&](const RenamedName& one) {
     return one.kind == kind && one.owner == owner && one.old_name == name;
   });
-  return std::string(found == kRenamed.end() ? name : found->name);
+  return std::string(found == known.end() ? name : found->name);
 }
 
 Error old_name_warning(std::string_view old_name, std::string_view name, Place place) {

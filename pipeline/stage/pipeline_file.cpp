@@ -14,7 +14,7 @@
 #include "pipeline/files/rig_yaml.hpp"
 #include "pipeline/files/yaml_map.hpp"
 #include "pipeline/stage/files_written.hpp"
-#include "pipeline/stage/option_yaml.hpp"
+#include "pipeline/stage/option_assignment.hpp"
 #include "pipeline/stage/pipeline_plan.hpp"
 #include "pipeline/stage/setting_overrides.hpp"
 #include "pipeline/stage/unknown_names.hpp"
@@ -203,28 +203,15 @@ class PlanReader {
 
   void read_options(const YamlNode& node, StageSpec& spec) {
     if (node.kind == YamlNode::Kind::null) return;
-    const std::string who = spec.tag.empty() ? spec.stage : spec.tag;
-    files::YamlMap map(node, who, errors_);
     const StageType* type = stages_.find(spec.stage);
     if (!type) return;  // reported when the pipeline is built
+    const files::YamlMap map(node, spec.tag.empty() ? spec.stage : spec.tag, errors_);
+    stage::OptionAssignment options(*type, spec, folder_, errors_, plan_.warnings);
     for (const auto& entry : node.entries) {
-      const std::string name = current(files::RenamedName::Kind::option, type->name, entry.key, entry.place);
-      const Option* option = type->find_option(name);
-      if (!option) {
-        map.fail(entry.place, "there is no option '" + entry.key + "'",
-                 stage::no_such_option(*type, entry.key));
-        continue;
-      }
-      spec.places[option->name] = entry.value.place;
       YamlNode value = entry.value;
       const std::size_t before = errors_.size();
       variables_.substitute(value, errors_);
-      std::optional<OptionValue> read;
-      if (errors_.size() == before) read = stage::read_option(*option, value, who, folder_, errors_);
-      if (read)
-        spec.with[option->name] = std::move(*read);
-      else
-        spec.refused.insert(option->name);
+      options.assign(entry.key, entry.place, value, errors_.size() == before);
     }
   }
 

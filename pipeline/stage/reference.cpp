@@ -16,15 +16,39 @@ struct OptionRow {
   std::string help;
 };
 
-std::vector<OptionRow> rows_of(const StageType& type) {
-  const auto stage = type.make();
+/// The options of one group, by their names in it; the group without a name has all that are in none.
+struct OptionTable {
+  std::string group;
   std::vector<OptionRow> rows;
+};
+
+/// The group without a name first, then each where its first option is declared.
+std::vector<OptionTable> tables_of(const StageType& type) {
+  const auto stage = type.make();
+  std::vector<OptionTable> tables(1);
   for (const auto& option : type.options) {
+    const auto dot = option.name.rfind('.');
+    const bool in_group = dot != std::string::npos;
+    const std::string group = in_group ? option.name.substr(0, dot) : "";
+    auto table = std::ranges::find(tables, group, &OptionTable::group);
+    if (table == tables.end()) table = tables.insert(table, {.group = group, .rows = {}});
     const std::string fallback =
         option.required ? "required" : to_text(option, option.get(type.options_object(*stage)));
-    rows.push_back({option.name, expectation(option), fallback.empty() ? "\"\"" : fallback, option.help});
+    table->rows.push_back({option.name.substr(in_group ? dot + 1 : 0), expectation(option),
+                           fallback.empty() ? "\"\"" : fallback, option.help});
   }
-  return rows;
+  return tables;
+}
+
+/// "links: {laser: {delay: …}}", how the first option of a group is written.
+std::string as_map(const OptionTable& table) {
+  std::string text = table.rows.front().name + ": …";
+  for (std::string rest = table.group; !rest.empty();) {
+    const auto dot = rest.rfind('.');
+    text = fmt::format("{}: {{{}}}", rest.substr(dot == std::string::npos ? 0 : dot + 1), text);
+    rest = dot == std::string::npos ? "" : rest.substr(0, dot);
+  }
+  return text;
 }
 
 std::string_view role_of(const StageInput& input) {
@@ -53,11 +77,14 @@ std::string stage_text(const StageType& type) {
   text += "\n";
   for (const auto& input : type.inputs) text += fmt::format("  {} {}\n", role_of(input), input.kind.name());
   for (const auto& kind : type.outputs) text += fmt::format("  gives {}\n", kind.name());
-  const auto rows = rows_of(type);
-  if (!rows.empty()) text += "\noptions:\n";
-  for (const auto& row : rows) {
-    text +=
-        fmt::format("  {:<16} {}\n{:19}{}; default: {}\n", row.name, row.help, "", row.value, row.fallback);
+  for (const auto& table : tables_of(type)) {
+    if (table.rows.empty()) continue;
+    text += table.group.empty() ? "\noptions:\n"
+                                : fmt::format("\n{} ({}):\n", as_map(table), type.groups.at(table.group));
+    for (const auto& row : table.rows) {
+      text +=
+          fmt::format("  {:<16} {}\n{:19}{}; default: {}\n", row.name, row.help, "", row.value, row.fallback);
+    }
   }
   return text;
 }
@@ -69,12 +96,18 @@ std::string stage_markdown(const StageType& type) {
   for (const auto& input : type.inputs)
     text += fmt::format("| {} | `{}` |\n", role_of(input), input.kind.name());
   for (const auto& kind : type.outputs) text += fmt::format("| gives | `{}` |\n", kind.name());
-  const auto rows = rows_of(type);
-  if (rows.empty()) return text + "\nIt has no options.\n";
-  text += "\n| option | value | default | meaning |\n|---|---|---|---|\n";
-  for (const auto& row : rows) {
-    text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, cell(row.value), cell(row.fallback),
-                        cell(row.help));
+  if (type.options.empty()) return text + "\nIt has no options.\n";
+  for (const auto& table : tables_of(type)) {
+    if (table.rows.empty()) continue;
+    if (!table.group.empty()) {
+      text += fmt::format("\n## {}\n\n{}, written as `{}`.\n", table.group,
+                          capitalised(type.groups.at(table.group)), as_map(table));
+    }
+    text += "\n| option | value | default | meaning |\n|---|---|---|---|\n";
+    for (const auto& row : table.rows) {
+      text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, cell(row.value), cell(row.fallback),
+                          cell(row.help));
+    }
   }
   return text;
 }
@@ -113,7 +146,11 @@ nlohmann::json to_json(const OptionValue& value) {
 
 nlohmann::ordered_json effective_options(const PipelineNode& node) {
   auto options = nlohmann::ordered_json::object();
-  for (const auto& option : node.type->options) options[option.name] = to_json(node.value(option));
+  for (const auto& option : node.type->options) {
+    std::string path = "/" + option.name;
+    std::ranges::replace(path, '.', '/');
+    options[nlohmann::ordered_json::json_pointer(path)] = to_json(node.value(option));
+  }
   return options;
 }
 

@@ -21,8 +21,12 @@ void check_options(const StageType& type) {
       throw Error("stage " + type.name + " declares its option '" + option.name + "' wrongly: " + what,
                   "correct the option in the stage's describe()");
     };
-    if (!data::is_plain_name(option.name)) fail("names are of a-z, 0-9 and _");
+    if (!data::is_dotted_name(option.name)) fail("names are of a-z, 0-9 and _, with dots behind groups");
     if (!seen.insert(option.name).second) fail("it is declared twice");
+    if (type.has_group(option.name)) fail("a group has the same name");
+    const auto group = option.name.rfind('.');
+    if (group != std::string::npos && !type.groups.contains(option.name.substr(0, group)))
+      fail("its group has no help");
     if (option.help.empty()) fail("it has no help");
     if (option.type == OptionType::choice && option.choices.empty()) fail("an enumeration needs choices()");
     if (option.required) continue;
@@ -58,6 +62,13 @@ const Option* StageType::find_option(const std::string& option) const {
   const auto found =
       std::find_if(options.begin(), options.end(), [&](const auto& o) { return o.name == option; });
   return found == options.end() ? nullptr : &*found;
+}
+
+bool StageType::has_group(std::string_view group) const {
+  return std::ranges::any_of(options, [&](const Option& option) {
+    return option.name.size() > group.size() && option.name.starts_with(group) &&
+           option.name[group.size()] == '.';
+  });
 }
 
 bool StageType::gives(const Kind& kind) const {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/files/quantity.hpp"
@@ -62,17 +63,32 @@ Json option_schema(const Option& option, const OptionValue& fallback) {
   return schema;
 }
 
+/// Schema of the map of a group's options, or of all options.
+/// @param prefix  "links." for the group links, "" for all
+Json options_schema(const StageType& type, Stage& stage, const std::string& prefix) {
+  Json options = Json::object();
+  std::vector<std::string> required;
+  for (const auto& option : type.options) {
+    if (!option.name.starts_with(prefix)) continue;
+    const std::string rest = option.name.substr(prefix.size());
+    const std::string name = rest.substr(0, rest.find('.'));
+    if (option.required && std::ranges::find(required, name) == required.end()) required.push_back(name);
+    if (name == rest)
+      options[name] = option_schema(option, option.get(type.options_object(stage)));
+    else if (!options.contains(name))
+      options[name] = options_schema(type, stage, prefix + name + ".");
+  }
+  Json schema = {
+      {"type", Json::array({"object", "null"})}, {"properties", options}, {"additionalProperties", false}};
+  const auto help = type.groups.find(prefix.substr(0, prefix.rfind('.')));
+  if (help != type.groups.end()) schema["description"] = help->second;
+  if (!required.empty()) schema["required"] = required;
+  return schema;
+}
+
 Json stage_schema(const StageType& type) {
   const auto stage = type.make();
-  Json options = Json::object();
-  Json required = Json::array();
-  for (const auto& option : type.options) {
-    options[option.name] = option_schema(option, option.get(type.options_object(*stage)));
-    if (option.required) required.push_back(option.name);
-  }
-  Json with = {
-      {"type", Json::array({"object", "null"})}, {"properties", options}, {"additionalProperties", false}};
-  if (!required.empty()) with["required"] = required;
+  const Json with = options_schema(type, *stage, "");
   const Json text = {{"type", "string"}};
   Json schema = {{"type", "object"},
                  {"description", type.summary},
@@ -83,7 +99,7 @@ Json stage_schema(const StageType& type) {
                    {"with", with}}},
                  {"additionalProperties", false},
                  {"required", Json::array({"stage"})}};
-  if (!required.empty()) schema["required"].push_back("with");
+  if (with.contains("required")) schema["required"].push_back("with");
   return schema;
 }
 

@@ -5,13 +5,14 @@
 
 #include "pipeline/files/control_characters.hpp"
 #include "pipeline/files/nearest.hpp"
-#include "pipeline/stage/option_yaml.hpp"
+#include "pipeline/stage/option_assignment.hpp"
 #include "pipeline/stage/unknown_names.hpp"
 
 namespace crisp::stage {
 namespace {
 
 using files::YamlNode;
+using NameOf = files::RenamedName::Kind;
 
 /// A place that names the setting, without line and column.
 Place place_of(const std::string& text) { return {"--set " + text, 0, 0}; }
@@ -27,27 +28,46 @@ void comes_from_command_line(YamlNode& node, const Place& place) {
 }
 
 /// The value as YAML, or null with an error added if it is none.
-YamlNode parse_value(const std::string& value, const std::string& text, std::vector<Error>& errors) {
+YamlNode parse_value(const std::string& value, const Place& place, std::vector<Error>& errors) {
   YamlNode node;
   try {
     node = files::parse_yaml(value, {});
   } catch (const Error& error) {
-    errors.emplace_back(error.message(), error.advice(), place_of(text));
+    errors.emplace_back(error.message(), error.advice(), place);
   }
-  comes_from_command_line(node, place_of(text));
+  comes_from_command_line(node, place);
   return node;
 }
 
-/// Suggestion for a name that is neither a variable nor a tag: an option without its stage,
-/// or the nearest tag.
-std::string meant(const std::string& name, const std::vector<StageSpec>& specs, const StageRegistry& stages) {
+/// Suggestion for a setting of which neither a variable nor a tag is known: an option without its stage, or
+/// the nearest tag.
+std::string meant(const std::string& target, const std::string& tag, const std::vector<StageSpec>& specs,
+                  const StageRegistry& stages) {
   std::vector<std::string> tags;
   for (const auto& spec : specs) {
     tags.push_back(spec.tag);
     const StageType* type = stages.find(spec.stage);
-    if (type && type->find_option(name)) return "did you mean '" + spec.tag + "." + name + "'?";
+    if (type && type->find_option(target)) return "did you mean '" + spec.tag + "." + target + "'?";
   }
-  return files::did_you_mean(name, tags, {});
+  return files::did_you_mean(tag, tags, {});
+}
+
+/// What a setting names.
+struct Target {
+  StageSpec* spec = nullptr;  ///< null: no stage has such a tag
+  std::string tag;            ///< as it is written; all before the last dot where no stage has it
+  std::string option;         ///< behind the tag, with its groups
+};
+
+/// The stage of the longest tag with which the name begins: tags have dots, and so have options of groups.
+Target find_target(const std::string& name, std::vector<StageSpec>& specs) {
+  for (auto dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1)) {
+    const std::string tag = name.substr(0, dot);
+    const std::string current = files::current_name(NameOf::stage, "", tag);
+    const auto spec = std::ranges::find(specs, current, &StageSpec::tag);
+    if (spec != specs.end()) return {&*spec, tag, name.substr(dot + 1)};
+  }
+  return {.spec = nullptr, .tag = name.substr(0, name.rfind('.')), .option = {}};
 }
 
 }  // namespace
@@ -75,7 +95,7 @@ std::optional<YamlNode> Settings::take_variable(const std::string& name, std::ve
   for (auto& setting : settings_) {
     if (setting.target != name) continue;
     setting.used = true;
-    value = parse_value(setting.value, setting.text, errors);  // the last one holds
+    value = parse_value(setting.value, place_of(setting.text), errors);  // the last one holds
   }
   return value;
 }
@@ -91,45 +111,34 @@ void Settings::apply(std::vector<StageSpec>& specs, const StageRegistry& stages,
 void Settings::apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
                      std::vector<Error>& errors, std::vector<PipelineWarning>& warnings) {
   const Place place = place_of(setting.text);
-  const auto current = [&](files::RenamedName::Kind kind, std::string_view owner, const std::string& given) {
-    return accept_old_name(kind, owner, given, place, warnings);
-  };
-  const auto dot = setting.target.rfind('.');
-  const std::string tag = current(files::RenamedName::Kind::stage, "", setting.target.substr(0, dot));
-  const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.tag == tag; });
-  if (dot == std::string::npos || spec == specs.end()) {
-    const std::string what = dot == std::string::npos ? "variable" : "stage with the tag";
-    errors.emplace_back("the pipeline has no " + what + " '" + tag + "'", meant(tag, specs, stages), place);
+  const Target target = find_target(setting.target, specs);
+  if (!target.spec) {
+    const bool has_dot = setting.target.find('.') != std::string::npos;
+    const std::string what = has_dot ? "stage with the tag" : "variable";
+    errors.emplace_back("the pipeline has no " + what + " '" + target.tag + "'",
+                        meant(setting.target, target.tag, specs, stages), place);
     return;
   }
-  const StageType* type = stages.find(spec->stage);
+  accept_old_name(NameOf::stage, "", target.tag, place, warnings);
+  const StageType* type = stages.find(target.spec->stage);
   if (!type) return;  // reported when the pipeline is built
-  const std::string name =
-      current(files::RenamedName::Kind::option, type->name, setting.target.substr(dot + 1));
-  const Option* option = type->find_option(name);
-  if (!option) {
-    errors.emplace_back(tag + ": there is no option '" + name + "'", no_such_option(*type, name), place);
-    return;
-  }
-  spec->places[name] = place;
+  const std::size_t before = errors.size();
+  const YamlNode value = value_of(*type, target.option, setting.value, place, errors);
+  OptionAssignment(*type, *target.spec, {}, errors, warnings)
+      .assign(target.option, place, value, errors.size() == before);
+}
+
+/// A value as YAML. That of an option with one value is taken as it is: the shell has its own quotes.
+YamlNode Settings::value_of(const StageType& type, const std::string& option, const std::string& value,
+                            const Place& place, std::vector<Error>& errors) {
+  const Option* known = type.find_option(files::current_name(NameOf::option, type.name, option));
+  const bool is_structured = known && (known->list || known->type == OptionType::groups);
+  if (is_structured || type.has_group(option)) return parse_value(value, place, errors);
   YamlNode node;
-  if (option->list || option->type == OptionType::groups) {
-    const std::size_t before = errors.size();
-    node = parse_value(setting.value, setting.text, errors);
-    if (errors.size() != before) {
-      spec->refused.insert(name);
-      return;
-    }
-  } else {  // taken as it is: the shell has its own quotes
-    node.kind = YamlNode::Kind::scalar;
-    node.text = setting.value;
-    comes_from_command_line(node, place);
-  }
-  auto value = read_option(*option, node, tag, {}, errors);
-  if (value)
-    spec->with[name] = std::move(*value);
-  else
-    spec->refused.insert(name);
+  node.kind = YamlNode::Kind::scalar;
+  node.text = value;
+  comes_from_command_line(node, place);
+  return node;
 }
 
 }  // namespace crisp::stage

@@ -36,6 +36,9 @@ class Settings {
   static void apply(Setting& setting, std::vector<StageSpec>& specs, const StageRegistry& stages,
                     std::vector<Error>& errors, std::vector<PipelineWarning>& warnings);
 
+  static files::YamlNode value_of(const StageType& type, const std::string& option, const std::string& value,
+                                  const Place& place, std::vector<Error>& errors);
+
   std::vector<Setting> settings_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pipeline/stage/unknown_names.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -32,6 +33,9 @@ std::string meant_without_family(std::string_view name, const StageRegistry& sta
   });
 }
 
+/// "delay" of "links.laser.delay".
+std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
 }  // namespace
 
 Error no_such_stage(const std::string& name, const StageRegistry& stages) {
@@ -41,10 +45,20 @@ Error no_such_stage(const std::string& name, const StageRegistry& stages) {
 }
 
 std::string no_such_option(const StageType& type, const std::string& name) {
+  if (type.options.empty()) return "it has none";
   std::vector<std::string> known;
-  for (const auto& option : type.options) known.push_back(option.name);
-  return files::did_you_mean(name, known,
-                             known.empty() ? "it has none" : "crisp stages " + type.name + " lists them");
+  std::vector<std::string> last_parts;
+  for (const auto& option : type.options) {
+    known.push_back(option.name);
+    last_parts.push_back(last_part(option.name));
+  }
+  for (const auto& [group, help] : type.groups) known.push_back(group);
+  std::string meant = files::did_you_mean(name, known, {});
+  if (!meant.empty()) return meant;
+  const auto near = files::nearest_name(last_part(name), last_parts);  // without its group, or in another
+  if (!near) return "crisp stages " + type.name + " lists them";
+  const auto at = std::ranges::find(last_parts, *near) - last_parts.begin();
+  return "did you mean '" + known[static_cast<std::size_t>(at)] + "'?";
 }
 
 std::string accept_old_name(files::RenamedName::Kind kind, std::string_view owner, const std::string& name,

@@ -142,11 +142,11 @@ std::optional<Hidden> hidden_term(const std::string& term, std::uint64_t seed) {
   }
   for (const Parameter& parameter : found->parameters) hidden.truth[parameter.name] = parameter.value;
   const MotionSettings& motion = drawn.recording.scanner.motion;
-  hidden.simulated = {motion.kind == MotionKind::reversal ? "motion=reversal" : "motion=varying",
-                      fmt::format("min_rate={}Hz", motion.min_rate),
-                      fmt::format("max_rate={}Hz", motion.max_rate)};
+  hidden.simulated = {motion.kind == MotionKind::reversal ? "motion.kind=reversal" : "motion.kind=varying",
+                      fmt::format("motion.min_rate={}Hz", motion.min_rate),
+                      fmt::format("motion.max_rate={}Hz", motion.max_rate)};
   if (term == "mirror.period") {  // clock stages measure it; that it should be nominal must be requested
-    hidden.simulated.emplace_back("mirror_slowest=0");
+    hidden.simulated.emplace_back("lasers.mirror_slowest=0");
     hidden.requested.emplace_back("diagnose.clocks.nominal_mirrors=true");
   }
   return hidden;

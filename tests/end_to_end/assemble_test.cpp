@@ -90,8 +90,8 @@ TEST_F(Assemble, TheNominalValuesOfTheRigGiveAFarWorseCloud) {
 }
 
 TEST_F(Assemble, TheSkewsOfTheClocksAreRightWithinOnePpmOverTenMinutes) {
-  simulate({"duration=600s", "clock_drift=1.4e-9", "first_angle=0deg", "last_angle=90deg", "step=5deg",
-            "plate_frequency=100Hz", "remission=none"});
+  simulate({"duration=600s", "clocks.drift=1.4e-9", "lasers.first_angle=0deg", "lasers.last_angle=90deg",
+            "lasers.step=5deg", "encoder.frequency=100Hz", "telegrams.remission=none"});
   const Outcome outcome = fixture_.assemble("simulation", "out");
   ASSERT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   const auto& devices = outcome.stage("clock.convex_hull")["report"]["devices"];

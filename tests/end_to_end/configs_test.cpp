@@ -284,7 +284,7 @@ TEST(Configs, EmulateHasTheRigOfLoopback) {
 
 TEST(Configs, AssembleNamesTheMissingCalibration) {
   const test::PipelineFixture fixture;
-  fixture.simulate("made", {"duration=1s", "step=2deg"});
+  fixture.simulate("made", {"duration=1s", "lasers.step=2deg"});
   const auto none = fixture.run("assemble.yaml", fixture / "made/hub.pcap", "out");
   EXPECT_EQ(none.status, ExitStatus::failed);
   EXPECT_THAT(none.console, testing::HasSubstr("there is no calibration " + (fixture / "out").string()));

@@ -43,7 +43,8 @@ class Damage : public testing::Test {
   static void SetUpTestSuite() {
     fixture = std::make_unique<test::PipelineFixture>();
     const std::string room = test::write_room(*fixture / "room.yaml").string();
-    fixture->simulate("made", {"duration=1s", "step=5deg", "plate_frequency=200Hz", "scene_file=" + room});
+    fixture->simulate("made",
+                      {"duration=1s", "lasers.step=5deg", "encoder.frequency=200Hz", "scene_file=" + room});
     capture = test::bytes_of(*fixture / "made/hub.pcap");
     borders = borders_of(capture);
     points = fixture->assemble("made", "whole").cloud->size();

@@ -16,7 +16,7 @@ using testing::Not;
 
 class Direction : public testing::Test {
  protected:
-  void SetUp() override { fixture_.simulate("made", {"duration=5s", "step=1deg"}, rig("clockwise")); }
+  void SetUp() override { fixture_.simulate("made", {"duration=5s", "lasers.step=1deg"}, rig("clockwise")); }
   std::filesystem::path rig(const std::string& direction) const {
     std::string yaml = test::bytes_of(source_dir() + "/configs/rig.yaml");
     const std::string key = "direction: counter_clockwise";

@@ -58,11 +58,11 @@ std::vector<std::string> plan_of(const YAML::Node& truth) {
                                                        : std::pair(0.6, 1.6);
   constexpr double kLongest = 20;  // s: observability does not depend on more
   return {"scene=" + (scene == "tunnel" ? "hall" : scene),
-          "motion=" + (motion == "varied" || motion == "ripple" ? "varying" : motion),
-          fmt::format("min_rate={}Hz", slowest * rate),
-          fmt::format("max_rate={}Hz", fastest * rate),
+          "motion.kind=" + (motion == "varied" || motion == "ripple" ? "varying" : motion),
+          fmt::format("motion.min_rate={}Hz", slowest * rate),
+          fmt::format("motion.max_rate={}Hz", fastest * rate),
           fmt::format("duration={}s", std::min(duration, kLongest)),
-          "lasers={" + lasers + "}"};
+          "lasers.kinds={" + lasers + "}"};
 }
 
 }  // namespace

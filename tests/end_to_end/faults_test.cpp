@@ -26,7 +26,7 @@ using testing::IsEmpty;
 class Faults : public testing::Test {
  protected:
   void simulate(std::vector<std::string> options) {
-    options.emplace_back("step=2deg");
+    options.emplace_back("lasers.step=2deg");
     options.push_back("scene_file=" + test::write_room(fixture_ / "room.yaml").string());
     fixture_.simulate("made", options);
   }
@@ -61,7 +61,7 @@ class Faults : public testing::Test {
 };
 
 TEST_F(Faults, LostTelegramsAndReadingsAreCountedByDevice) {
-  simulate({"duration=4s", "lost_scans=0.1", "lost_readings=0.02"});
+  simulate({"duration=4s", "faults.lost_scans=0.1", "faults.lost_readings=0.02"});
   const Outcome outcome = assemble();
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   expect_on_the_walls(outcome);
@@ -76,7 +76,8 @@ TEST_F(Faults, LostTelegramsAndReadingsAreCountedByDevice) {
 }
 
 TEST_F(Faults, LostRepeatedAndDamagedPacketsOfTheCaptureLeaveASoundCloud) {
-  simulate({"duration=4s", "lost_frames=0.02", "repeated_frames=0.02", "damaged_frames=0.02"});
+  simulate({"duration=4s", "faults.lost_frames=0.02", "faults.repeated_frames=0.02",
+            "faults.damaged_frames=0.02"});
   const Outcome outcome = assemble();
   EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
   expect_on_the_walls(outcome);
@@ -84,7 +85,7 @@ TEST_F(Faults, LostRepeatedAndDamagedPacketsOfTheCaptureLeaveASoundCloud) {
 }
 
 TEST_F(Faults, ALaserThatIsSilentForASecondLeavesAGapOfItsOwn) {
-  simulate({"duration=4s", "silences=laser2@1.5s+1s"});
+  simulate({"duration=4s", "faults.silences=laser2@1.5s+1s"});
   const Outcome outcome = assemble();
   EXPECT_EQ(outcome.status, ExitStatus::done);
   EXPECT_THAT(outcome.console, HasSubstr("laser2: silent 1 time(s) for a second or more, longest 1.0 s"));
@@ -94,7 +95,7 @@ TEST_F(Faults, ALaserThatIsSilentForASecondLeavesAGapOfItsOwn) {
 }
 
 TEST_F(Faults, ThePlatesSilenceLeavesAGapInTheCloudAndIsReported) {
-  simulate({"duration=4s", "silences=plate@1.5s+1s"});
+  simulate({"duration=4s", "faults.silences=plate@1.5s+1s"});
   const Outcome outcome = assemble();
   EXPECT_EQ(outcome.status, ExitStatus::done);
   EXPECT_THAT(outcome.console,
@@ -106,7 +107,7 @@ TEST_F(Faults, ThePlatesSilenceLeavesAGapInTheCloudAndIsReported) {
 }
 
 TEST_F(Faults, WithoutOneLaserTheOthersStillMakeACloud) {
-  simulate({"duration=2s", "silences=laser2@0s+100s"});
+  simulate({"duration=2s", "faults.silences=laser2@0s+100s"});
   const Outcome outcome = assemble();
   EXPECT_EQ(outcome.status, ExitStatus::done);
   EXPECT_THAT(outcome.console, HasSubstr("laser2"));
@@ -116,17 +117,17 @@ TEST_F(Faults, WithoutOneLaserTheOthersStillMakeACloud) {
 }
 
 TEST_F(Faults, WithoutThePlateOrAnyLaserThereIsNoCloud) {
-  simulate({"duration=1s", "silences=plate@0s+100s"});  // a few readings come before
+  simulate({"duration=1s", "faults.silences=plate@0s+100s"});  // a few readings come before
   expect_nothing_but("could be placed: no encoder readings cover their times", assemble());
-  simulate({"duration=1s", "silences=plate@-9s+100s"});
+  simulate({"duration=1s", "faults.silences=plate@-9s+100s"});
   expect_nothing_but("there is no encoder reading", assemble());
-  simulate({"duration=1s", "silences=[laser1@0s+100s, laser2@0s+100s, laser3@0s+100s]"});
+  simulate({"duration=1s", "faults.silences=[laser1@0s+100s, laser2@0s+100s, laser3@0s+100s]"});
   expect_nothing_but("there is no scan of any laser", assemble());
 }
 
 TEST_F(Faults, AResetOfADevicesClockIsFoundAndTheCloudStaysSound) {
   for (const std::string device : {"laser1", "plate"}) {
-    simulate({"duration=6s", "restarts=" + device + "@3s"});
+    simulate({"duration=6s", "faults.restarts=" + device + "@3s"});
     const Outcome outcome = assemble();
     EXPECT_EQ(outcome.status, ExitStatus::done) << outcome.console;
     EXPECT_THAT(outcome.console, HasSubstr(device + ": its clock was reset 1 time(s)"));

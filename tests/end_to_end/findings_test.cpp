@@ -39,7 +39,8 @@ Findings diagnosed(const test::PipelineFixture& fixture, const std::string& conf
                    const std::filesystem::path& input, const std::string& output,
                    std::vector<std::string> options) {
   // The test's options come later, and take precedence.
-  options.insert(options.begin(), {"duration=4s", "motion=constant", "max_rate=0Hz", "last_angle=45deg"});
+  options.insert(options.begin(),
+                 {"duration=4s", "motion.kind=constant", "motion.max_rate=0Hz", "lasers.last_angle=45deg"});
   for (auto& option : options) option.insert(0, "grabber.simulate.");
   const auto simulated = fixture.run(config, input, "made", options);
   EXPECT_EQ(simulated.status, ExitStatus::done) << simulated.console;
@@ -53,7 +54,7 @@ TEST(Findings, OfOneScannerAreThoseOfTheOneThatIsSimulatedWithThem) {
   const test::PipelineFixture fixture;
   const Findings first = diagnosed(
       fixture, "simulate.yaml", {}, "first",
-      {"mirror_wander=0",
+      {"lasers.mirror_wander=0",
        "effects={laser2.noise.two_peaks: {separation: 15mm}, laser2.noise.normal: {sigma: 5mm}, laser1.range.step: {h: -8mm, at: 1.5s}, laser3.mirror.period: {excess: 0.1ms}}"});
   const Findings again = diagnosed(fixture, "like_real.yaml", fixture / "first", "again", {"seed=77"});
   const auto expect_near = [&](const char* cause, const char* name, double truth) {
@@ -108,8 +109,8 @@ TEST(Findings, OfAPlateBehindARadioLinkAreThoseOfItsFile) {
   const test::PipelineFixture fixture;
   const Findings found =
       diagnosed(fixture, "simulate.yaml", {}, "out",
-                {"devices=plate=esp32_wifi", "plate_frequency=4Hz", "duration=200s", "step=5deg",
-                 "mirror_frequency=5Hz", "laser_stall_rate=0Hz", "plate_stall_rate=0Hz"});
+                {"devices=plate=esp32_wifi", "encoder.frequency=4Hz", "duration=200s", "lasers.step=5deg",
+                 "lasers.mirror_frequency=5Hz", "links.laser.stall_rate=0Hz", "links.plate.stall_rate=0Hz"});
   const DeviceFacts& plate = device_of(found, "plate");
   EXPECT_NEAR(plate.skew, -117e-6, 4 * plate.skew_std_error);
   // 800 stamps determine the median of such a distribution to 6 %, the 95th percentile to 8 %.
@@ -130,7 +131,7 @@ TEST(Findings, OfScansThemselvesAreThoseThatWereSimulated) {
                                            "    with: {file: '${output}/diagnosis.json'}\n";
   fixture.simulate(
       "made",
-      {"duration=20s", "motion=stop_and_go", "max_rate=0.1Hz",
+      {"duration=20s", "motion.kind=stop_and_go", "motion.max_rate=0.1Hz",
        "effects={laser1.mirror.interleave: {shift: 0.25deg, period: 2, kind: 1}, laser2.latency.bursts: {together: 0.5, interval: 20ms, wait: 60ms}}"});
   const auto outcome = fixture.run(fixture / "scans.yaml", fixture / "made/hub.pcap", "out", {},
                                    source_dir() + "/configs/rig.yaml");

@@ -53,8 +53,9 @@ pipeline:
 }  // namespace
 
 const std::vector<std::string>& small_recording() {
-  static const std::vector<std::string> kSmall = {
-      "grabber.simulate.duration=0.4s", "grabber.simulate.step=5deg", "grabber.simulate.min_rate=2Hz"};
+  static const std::vector<std::string> kSmall = {"grabber.simulate.duration=0.4s",
+                                                  "grabber.simulate.lasers.step=5deg",
+                                                  "grabber.simulate.motion.min_rate=2Hz"};
   return kSmall;
 }
 

@@ -42,7 +42,7 @@ inline constexpr const char* kFileItself = "<stem><ext>";
 
 /// One option as it was declared: everything that parsing, validation and documentation need to know.
 struct Option {
-  std::string name;                    ///< of a-z, 0-9 and _
+  std::string name;                    ///< of a-z, 0-9 and _; in a group led by its name, "motion.kind"
   std::string help;                    ///< in half a sentence
   OptionType type = OptionType::text;  ///< of one value
   bool list = false;                   ///< takes a list of values (a single one is a list of length 1)

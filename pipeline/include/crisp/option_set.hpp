@@ -193,7 +193,8 @@ class OptionDeclaration {
 /// Between name and help stands the way from T to the member: one pointer to a member or callable, or a chain
 /// of up to three. Members can be bool, integers, double, float, std::string, std::filesystem::path,
 /// enumerations, a std::vector of these, or a std::optional of these (whose absence is written `auto`); or
-/// OptionGroups.
+/// OptionGroups. An option "motion.kind" is one of the group `motion`, a map in YAML: `motion: {kind:
+/// varying}`.
 template <class T>
 class OptionSet {
  public:

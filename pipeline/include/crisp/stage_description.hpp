@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct StageType {
   std::vector<StageInput> inputs;                ///< what it takes and holds; empty: it is a source
   std::vector<Kind> outputs;                     ///< what it gives
   std::vector<Option> options;                   ///< in the order of declaration
+  std::map<std::string, std::string> groups;     ///< of options, and what they have in common
   bool endless = false;                          ///< a source that ends only when the run is stopped
   std::function<std::unique_ptr<Stage>()> make;  ///< a fresh stage, with all options at their defaults
   std::function<void*(Stage&)> options_object;   ///< what Option::set and Option::get want of a stage
@@ -38,6 +41,8 @@ struct StageType {
   /// Whether it takes nothing.
   bool is_source() const { return inputs.empty(); }
   const Option* find_option(const std::string& option) const;  ///< nullptr if there is none
+  /// Whether options are in a group of this name: "motion", "links.laser", and therefore "links".
+  bool has_group(std::string_view group) const;
   /// Whether it may give items of this kind.
   bool gives(const Kind& kind) const;
 };
@@ -84,6 +89,12 @@ class StageDescription {
   template <class... Arguments>
   auto option(std::string option_name, Arguments&&... way_and_help) {
     return options_.add(std::move(option_name), std::forward<Arguments>(way_and_help)...);
+  }
+
+  /// What the options of a group are of: "links.laser", "delays of the lasers' telegrams".
+  StageDescription& group(std::string group_name, std::string help) {
+    type_.groups[std::move(group_name)] = std::move(help);
+    return *this;
   }
 
   /// The complete description.

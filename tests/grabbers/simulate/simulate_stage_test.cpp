@@ -91,7 +91,7 @@ class SimulateStageTest : public testing::Test {
 };
 
 TEST_F(SimulateStageTest, GivesScansAndReadingsInTheOrderOfReceipt) {
-  const auto results = run("duration: 0.5s, scene: hall, mirror_slowest: 0, mirror_wander: 0");
+  const auto results = run("duration: 0.5s, scene: hall, lasers: {mirror_slowest: 0, mirror_wander: 0}");
   EXPECT_NEAR(Tally::scans, 3 * 25, 3);
   EXPECT_NEAR(Tally::readings, 0.7 * 500, 2);
   EXPECT_EQ(results[0].report.section["scene"], "hall");
@@ -179,7 +179,8 @@ TEST_F(SimulateStageTest, RefusesFindingsThatAreNotThereOrOfAnotherRig) {
 TEST_F(SimulateStageTest, ReadsEveryTermBackFromTheTruth) {
   std::string effects;
   for (const auto& name : terms_.names()) effects += (effects.empty() ? "" : ", ") + name + ": {}";
-  run("duration: 0.1s, first_angle: 0deg, last_angle: 10deg, truth: truth.yaml, effects: {" + effects + "}");
+  run("duration: 0.1s, lasers: {first_angle: 0deg, last_angle: 10deg}, truth: truth.yaml, effects: {" +
+      effects + "}");
   const Calibration truth = read_calibration(folder_ / "truth.yaml");
   EXPECT_EQ(truth.plate_terms.size() + truth.lasers[0].terms.size(), terms_.names().size() - 2)
       << "clocks drift, and mirrors turn, as devices' own";
@@ -203,23 +204,25 @@ TEST_F(SimulateStageTest, LeavesNoFilesWhenItIsInterrupted) {
 }
 
 TEST_F(SimulateStageTest, HasTheLossesOfItsFaults) {
-  run("duration: 2s, last_angle: -44deg, silences: [laser2@0.5s+1s], restarts: [laser1@1s]");
+  run("duration: 2s, lasers: {last_angle: -44deg}, faults: {silences: [laser2@0.5s+1s], restarts: [laser1@1s]}");
   EXPECT_NEAR(Tally::scans, 100 + 50 + 100, 6);
-  EXPECT_THAT(complaint("duration: 2s, silences: [laser9@0.5s+1s]"), HasSubstr("laser9"));
-  EXPECT_THAT(complaint("duration: 2s, silences: [laser1@now+1s]"), HasSubstr("laser2@3s+1s"));
-  EXPECT_THAT(complaint("duration: 2s, silences: [laser1]"), HasSubstr("laser2@3s+1s"));
+  EXPECT_THAT(complaint("duration: 2s, faults: {silences: [laser9@0.5s+1s]}"), HasSubstr("laser9"));
+  EXPECT_THAT(complaint("duration: 2s, faults: {silences: [laser1@now+1s]}"), HasSubstr("laser2@3s+1s"));
+  EXPECT_THAT(complaint("duration: 2s, faults: {silences: [laser1]}"), HasSubstr("laser2@3s+1s"));
 }
 
 TEST_F(SimulateStageTest, RefusesBeforeItRunsWhatMakesNoSense) {
-  EXPECT_THAT(complaint("min_rate: 3Hz"), HasSubstr("min_rate of 3 Hz is above its max_rate of 2 Hz; give"));
-  EXPECT_THAT(complaint("last_angle: -90deg"), HasSubstr("field of view"));
+  EXPECT_THAT(complaint("motion: {min_rate: 3Hz}"),
+              HasSubstr("min_rate of 3 Hz is above its max_rate of 2 Hz; give"));
+  EXPECT_THAT(complaint("lasers: {last_angle: -90deg}"), HasSubstr("field of view"));
   EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("did you mean 'mirror.cone'?"));
   EXPECT_THAT(complaint("effects: {mirror.coin: {kappa: 3}}"), HasSubstr("pipeline.yaml:4:"));
   EXPECT_THAT(complaint("effects: [mirror.cone]"), HasSubstr("a map of maps"));
   EXPECT_THAT(complaint("effects: {mirror.cone: 3}"), HasSubstr("is no map"));
   EXPECT_THAT(complaint("effects: {mirror.cone: {kappa: [3]}}"), HasSubstr("mirror.cone.kappa"));
   EXPECT_THAT(complaint("effects: {scene.moving: {}}"), HasSubstr("scene_file"));
-  EXPECT_THAT(complaint("stamp_lags: [1ms]"), HasSubstr("1 stamp_lags for 3 lasers; give one a laser"));
+  EXPECT_THAT(complaint("clocks: {stamp_lags: [1ms]}"),
+              HasSubstr("1 stamp_lags for 3 lasers; give one a laser"));
   EXPECT_THAT(complaint("scene: beach"), HasSubstr("office"));
   EXPECT_THAT(complaint("scene_file: nowhere.yaml"), HasSubstr("nowhere.yaml"));
 }

@@ -101,6 +101,21 @@ TEST(OldNames, AreAcceptedInSettingsAndInputsToo) {
                                                     testing::HasSubstr("'mend' is now called 'correct'")));
 }
 
+TEST(OldNames, OfAGroupsNameAreOptionsOfEarlierReleasesUnlessTheValueIsAMapOfTheGroup) {
+  const auto simulate = [](const std::string& options) {
+    return check("crisp: 1\npipeline:\n  - stage: grabber.simulate\n    with: {" + options + "}\n");
+  };
+  const Checked old = simulate("motion: reversal, lasers: {laser2: {step: 1deg}}");
+  EXPECT_TRUE(old.errors.empty()) << old.errors.front().what();
+  EXPECT_THAT(old.options.at(0), testing::ElementsAre("lasers.kinds", "motion.kind"));
+  EXPECT_EQ(old.warnings.size(), 2U);
+  const Checked current =
+      simulate("motion: {kind: reversal}, lasers: {step: 1deg, kinds: {laser2: {step: 1deg}}}");
+  EXPECT_TRUE(current.errors.empty()) << current.errors.front().what();
+  EXPECT_THAT(current.options.at(0), testing::ElementsAre("lasers.kinds", "lasers.step", "motion.kind"));
+  EXPECT_TRUE(current.warnings.empty());
+}
+
 TEST(OldNames, OfACalibrationsKeysAreAcceptedWithAWarning) {
   const test::TemporaryFolder folder;
   Calibration calibration = nominal_calibration(default_rig());

@@ -297,10 +297,11 @@ TEST_F(ProgramTest, CompletesItsCommandLineInBash) {
              "crisp: 1\nvars: {limit: 3}\npipeline:\n"
              "  - {stage: grabber.simulate, tag: first, with: {duration: 1s}}\n");
   EXPECT_EQ(completed(run + "''", 6).substr(0, 13), "limit= first.");
-  EXPECT_EQ(completed(run + "first.min_r", 6), "first.min_rate= ");
-  EXPECT_EQ(completed(run + "first.motion = co", 8), "constant ");
-  EXPECT_EQ(completed(run + "first.motion =", 7), "constant varying reversal stop_and_go ");
-  EXPECT_EQ(completed(run + "first.motion=co", 6), "first.motion=constant ") << "where = divides no words";
+  EXPECT_EQ(completed(run + "first.motion.min_r", 6), "first.motion.min_rate= ");
+  EXPECT_EQ(completed(run + "first.motion.kind = co", 8), "constant ");
+  EXPECT_EQ(completed(run + "first.motion.kind =", 7), "constant varying reversal stop_and_go ");
+  EXPECT_EQ(completed(run + "first.motion.kind=co", 6), "first.motion.kind=constant ")
+      << "where = divides no words";
   EXPECT_EQ(completed(CRISP_PROGRAM " run picture --set calibr", 4), "calibration= calibrate.load.file= ");
   EXPECT_EQ(completed(CRISP_PROGRAM " calibrate hub.pcap --set clock.convex_hull.win", 4),
             "clock.convex_hull.window= ");
