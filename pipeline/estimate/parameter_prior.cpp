@@ -71,6 +71,20 @@ Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model
   return centres;
 }
 
+bool is_amplitude(const SensorModel& model, std::size_t parameter) {
+  const EffectParameter* term = declared(model, parameter);
+  return term && !term->shape && term->upper > term->lower;
+}
+
+Eigen::VectorXd prior_means(const ParameterPrior& range, const SensorModel& start,
+                            const std::vector<std::size_t>& free) {
+  Eigen::VectorXd means = centres_of(range, start, free);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (is_amplitude(start, free[i])) means[static_cast<Eigen::Index>(i)] = declared(start, free[i])->neutral;
+  }
+  return means;
+}
+
 SensorModel with(const SensorModel& model, const std::vector<std::size_t>& free, const Eigen::VectorXd& x) {
   Eigen::VectorXd values = model.values();
   values(free) = x;

@@ -57,6 +57,14 @@ StepBounds step_bounds(const SensorModel& model, const std::vector<std::size_t>&
 Eigen::VectorXd picked(const SensorModel& model, const std::vector<std::size_t>& free);
 Eigen::VectorXd ranges_of(const ParameterPrior& range, const SensorModel& model,
                           const std::vector<std::size_t>& free);
+/// Whether the parameter is an amplitude of a term, whose prior is about the neutral value: none is expected.
+/// What the data hardly determine, as a curve where there are few beams, stays near it.
+bool is_amplitude(const SensorModel& model, std::size_t parameter);
+
+/// The means of the priors: those of amplitudes are neutral, of the others as centres_of() has them.
+Eigen::VectorXd prior_means(const ParameterPrior& range, const SensorModel& start,
+                            const std::vector<std::size_t>& free);
+
 /// The centres of the search: the rig's nominal value where it has a standard deviation, else the model's.
 Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model,
                            const std::vector<std::size_t>& free);

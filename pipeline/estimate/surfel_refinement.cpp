@@ -73,6 +73,11 @@ std::vector<std::size_t> fixed_parameters(const SensorModel& model, const Sample
   return all;
 }
 
+/// Whether the parameter's prior is about another value than the start.
+bool has_own_prior(const ParameterPrior& prior, const SensorModel& start, std::size_t parameter) {
+  return prior.nominal.contains(start.names()[parameter]) || is_amplitude(start, parameter);
+}
+
 /// How the start, which counts as an observation, acts on the outcome.
 enum class Pull {
   kNone,
@@ -89,8 +94,9 @@ Pull pull_of_start(const SurfelRefiner& refiner, const ParameterPrior& prior) {
       (picked(refiner.model(), refiner.free()) - picked(start, refiner.free())).cwiseAbs();
   Pull pull = Pull::kNone;
   for (Eigen::Index k = 0; k < moved.size(); ++k) {
-    const std::string& name = start.names()[refiner.free()[static_cast<std::size_t>(k)]];
-    if (prior.nominal.contains(name)) continue;
+    const std::size_t parameter = refiner.free()[static_cast<std::size_t>(k)];
+    const std::string& name = start.names()[parameter];
+    if (has_own_prior(prior, start, parameter)) continue;
     if (moved[k] > 2 * trusted[k]) return Pull::kIsFar;
     // Where the covered lags may end.
     if (name.ends_with(".eta") && moved[k] > 0.99 * trusted[k]) return Pull::kIsFar;
@@ -179,8 +185,9 @@ std::vector<std::string> far_moves(const SensorModel& start, const Outcome& foun
   const Eigen::VectorXd to = picked(found.model, found.free);
   std::vector<std::string> moves;
   for (Eigen::Index k = 0; k < from.size(); ++k) {
-    const std::string& name = start.names()[found.free[static_cast<std::size_t>(k)]];
-    if (std::abs(to[k] - from[k]) <= trusted[k] || prior.nominal.contains(name)) continue;
+    const std::size_t parameter = found.free[static_cast<std::size_t>(k)];
+    if (std::abs(to[k] - from[k]) <= trusted[k] || has_own_prior(prior, start, parameter)) continue;
+    const std::string& name = start.names()[parameter];
     const data::ShownUnit& unit = units.at(name);
     moves.push_back(fmt::format("{} moved from {:.4g} to {:.4g} {}, by more than {:.3g} {}", name,
                                 from[k] * unit.factor, to[k] * unit.factor, unit.name,

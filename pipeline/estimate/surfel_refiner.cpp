@@ -87,9 +87,9 @@ Eigen::VectorXd SurfelRefiner::posterior_step(const PlacedBeams& placed) {
   equations_ = is_all ? equations(found_) : equations(quality::thinned(found_, settings_.equation_beams));
   information_ = equations_.matrix / equations_.covariance_factor();
   const Eigen::VectorXd prior = ranges_of(settings_.prior, model_, free_).cwiseAbs2().cwiseInverse();
-  const Eigen::VectorXd from_start = picked(model_, free_) - centres_of(settings_.prior, start_, free_);
+  const Eigen::VectorXd off = picked(model_, free_) - prior_means(settings_.prior, start_, free_);
   const Eigen::VectorXd gradient =
-      equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(from_start);
+      equations_.vector / equations_.covariance_factor() + prior.cwiseProduct(off);
   const auto n = information_.rows();
   const Eigen::MatrixXd posterior = information_ + Eigen::MatrixXd(prior.asDiagonal());
   covariance_ = posterior.ldlt().solve(Eigen::MatrixXd::Identity(n, n));

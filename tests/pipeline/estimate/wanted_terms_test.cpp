@@ -53,6 +53,20 @@ TEST(RequestedTerms, AreFreeButForTheirForms) {
   EXPECT_EQ(declared(model, 0), nullptr) << "λ";
 }
 
+TEST(ParameterPrior, OfAnAmplitudeIsAboutItsNeutralValueAndOfOthersAboutTheStart) {
+  Calibration calibration = nominal_calibration(default_rig());
+  add_requested_terms(calibration, {"laser1.range.cyclic"}, built_in_terms());
+  auto& parameters = calibration.lasers[0].terms.at(0).parameters;  // a, b and the period P
+  for (Parameter& parameter : parameters) parameter.value = 0.5;
+  const SensorModel start(calibration, built_in_terms());
+  const std::vector<std::size_t> some = {start.index("laser1.tau"), start.index("laser1.range.cyclic.a"),
+                                         start.index("laser1.range.cyclic.P")};
+  const Eigen::VectorXd means = prior_means({}, start, some);
+  EXPECT_EQ(means[0], start.values()[static_cast<Eigen::Index>(some[0])]);
+  EXPECT_EQ(means[1], 0);
+  EXPECT_EQ(means[2], 0.5);
+}
+
 TEST(RequestedTerms, ThatAreNoneAreRefused) {
   Calibration calibration = nominal_calibration(default_rig());
   EXPECT_THROW(add_requested_terms(calibration, {"mirror.coin"}, built_in_terms()), Error);
