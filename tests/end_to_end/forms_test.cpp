@@ -62,6 +62,16 @@ TEST_P(Forms, HaveTheNameOfTheirCause) {
 // With more beams the general member of base.motion gains more than its formulas, and takes their place.
 TEST(FormsWithAllBeams, AGeneralMemberMayReplaceItsFormula) { is_named(3005, {"effect=settles"}, {}); }
 
+// A curve of remission has coefficients where there are few beams; they ran off to their bounds, and spoilt
+// the held-out turns.
+TEST(FormsWithAllBeams, ACurveWithFewBeamsAtItsEndIsNamed) { is_named(6180, {"has_effect=1"}, {}); }
+
+// Surfaces that the plain model selects are those where a large error hardly shows.
+TEST(FormsWithAllBeams, ALargeErrorOfAllRangesIsNamed) { is_named(6133, {"has_effect=1"}, {}); }
+
+// Two formulas, a general member and a formula replace one another before the general member stays.
+TEST(FormsWithAllBeams, ACandidateThatWasReplacedComesBack) { is_named(6182, {"has_effect=1"}, {}); }
+
 INSTANTIATE_TEST_SUITE_P(
     Of, Forms,
     testing::Values(Form{6, {"effect=third_harmonic", "effect_amount=3", "scene=office"}},

@@ -191,46 +191,59 @@ void CrossValidator::Score::append(const Score& other) {
   turns.insert(turns.end(), other.turns.begin(), other.turns.end());
 }
 
-CrossValidator::CrossValidator(Halves halves, const SensorModel& chooser,
+CrossValidator::CrossValidator(Halves halves, const std::vector<SensorModel>& choosers,
                                const quality::SurfelSettings& settings)
     : halves_(std::move(halves)), settings_(settings) {
+  for (const SensorModel& chooser : choosers) choices_.push_back(choice_of(chooser));
+}
+
+CrossValidator::Choice CrossValidator::choice_of(const SensorModel& chooser) const {
   constexpr std::size_t kBeams = 200'000;
-  const SurfaceObservations observations(chooser, halves_.held_out, {.surfels = settings}, kBeams);
-  surfels_ = observations.surfels();
-  halves_.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
-  reference_ = observations.placed();
+  const SurfaceObservations observations(chooser, halves_.held_out, {.surfels = settings_}, kBeams);
   const auto reported = observations.beams().noise;
-  given_noise_.assign(reported.begin(), reported.end());
+  Choice choice{.held_out = halves_.held_out,
+                .surfels = observations.surfels(),
+                .reference = observations.placed(),
+                .given_noise = {reported.begin(), reported.end()}};
+  choice.held_out.beams.cos_incidence = observations.sample().beams.cos_incidence;
   double squares = 0;
   double weight = 0;
-  for (const quality::Surfel& surfel : surfels_.surfels) {
+  for (const quality::Surfel& surfel : choice.surfels.surfels) {
     for (const quality::SurfelResidual& r :
-         quality::residuals_of(surfel, surfels_, observations.beams(), settings_)) {
+         quality::residuals_of(surfel, choice.surfels, observations.beams(), settings_)) {
       squares += r.weight * std::pow(r.distance / r.spread, 2);
       weight += r.weight;
     }
   }
-  noise_ = std::sqrt(squares / std::max(1.0, weight));
+  choice.noise = std::sqrt(squares / std::max(1.0, weight));
+  return choice;
 }
 
 CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
-  estimate::PlacedBeams placed(model, halves_.held_out);
-  placed.align_with(*reference_, halves_.held_out);
-  const quality::BeamsView beams = placed.view(given_noise_);
   Score score;
   const std::size_t turns = halves_.turn.empty() ? 0 : std::ranges::max(halves_.turn) + std::size_t{1};
   score.turns.resize(turns);
   score.pieces.resize(kPiecesPerTurn * turns);
+  for (const Choice& choice : choices_) add(choice, model, score);
+  return score;
+}
+
+/// Adds the sums of the model on one chooser's surfaces.
+void CrossValidator::add(const Choice& choice, const SensorModel& model, Score& score) const {
+  estimate::PlacedBeams placed(model, choice.held_out);
+  placed.align_with(choice.reference, choice.held_out);
+  const quality::BeamsView beams = placed.view(choice.given_noise);
   std::vector<Vectors> clouds(score.turns.size());
-  for (const quality::Surfel& surfel : surfels_.surfels) {
-    const auto members = surfels_.beams_of(surfel);
-    const auto residuals = quality::residuals_of(surfel, surfels_, beams, settings_);
+  std::vector<double> weights(score.turns.size());
+  for (const quality::Surfel& surfel : choice.surfels.surfels) {
+    const auto members = choice.surfels.beams_of(surfel);
+    const auto residuals = quality::residuals_of(surfel, choice.surfels, beams, settings_);
     const ViewMeans views(members, residuals, beams);
     for (std::size_t k = 0; k < members.size(); ++k) {
       const std::size_t i = members[k];
       if (residuals[k].weight == 0) continue;
-      views.add(residuals[k], beams.views[i], noise_, score.pieces[halves_.piece[i]]);
-      score.turns[halves_.turn[i]].weight += residuals[k].weight;
+      views.add(residuals[k], beams.views[i], choice.noise, score.pieces[halves_.piece[i]]);
+      weights[halves_.turn[i]] += residuals[k].weight;
       Vectors& cloud = clouds[halves_.turn[i]];
       cloud.x.push_back(beams.points.x[i]);
       cloud.y.push_back(beams.points.y[i]);
@@ -240,9 +253,9 @@ CrossValidator::Score CrossValidator::score(const SensorModel& model) const {
   for (std::size_t t = 0; t < clouds.size(); ++t) {
     if (clouds[t].x.empty()) continue;
     const Rqe entropy = rqe(clouds[t].view(), {}, {.sigma = 0.02, .cutoff = 5, .gradient = false});
-    score.turns[t].entropy = score.turns[t].weight * entropy.value;
+    score.turns[t].weight += weights[t];
+    score.turns[t].entropy += weights[t] * entropy.value;
   }
-  return score;
 }
 
 std::vector<Gain> CrossValidator::gains(const Score& before, const Score& after) {

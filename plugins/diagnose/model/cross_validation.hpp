@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <crisp/findings.hpp>
@@ -28,16 +27,20 @@ struct Halves {
 /// @param held_out  which half is held out, 0 or 1
 Halves halves_of(const estimate::Sample& sample, std::uint32_t held_out = 1);
 
-/// Held-out cross-validation of sensor models by the distances of beams to surfaces. The beams and their
-/// surfaces are selected once, with a model that has none of the terms under test. Rigid motions of a whole
-/// cloud count for nothing: two fits may differ by a rotation that the data do not determine.
+/// Held-out cross-validation of sensor models by the distances of beams to surfaces, which are selected once.
+/// A model fits best where its own surfaces are, so the two models that are compared select in turn, and each
+/// is scored on the surfaces of both. Rigid motions of a whole cloud count for nothing: two fits may differ
+/// by a rotation that the data do not determine.
 class CrossValidator {
  public:
-  CrossValidator(Halves halves, const SensorModel& chooser, const quality::SurfelSettings& settings);
+  /// @param choosers  models that select surfaces: without the terms under test, and with all of them
+  CrossValidator(Halves halves, const std::vector<SensorModel>& choosers,
+                 const quality::SurfelSettings& settings);
 
   const estimate::Sample& fitted() const { return halves_.fitted; }
 
-  /// Held-out score of one model: sums over the beams of each piece, and of each turn.
+  /// Held-out score of one model: sums over the beams of each piece, and of each turn, on the surfaces of
+  /// every chooser.
   struct Score {
     struct Sums {
       double weight = 0;
@@ -62,12 +65,20 @@ class CrossValidator {
   static std::vector<Gain> gains(const Score& before, const Score& after);
 
  private:
+  /// Surfaces that one chooser selects in the held-out half.
+  struct Choice {
+    estimate::Sample held_out;  ///< with the incidence on these surfaces
+    quality::Surfels surfels;
+    estimate::PlacedBeams reference;  ///< the held-out beams by the chooser
+    std::vector<float> given_noise;   ///< relative noise of the held-out beams
+    double noise = 0;                 ///< [σ] of the chooser's residuals
+  };
+  Choice choice_of(const SensorModel& chooser) const;
+  void add(const Choice& choice, const SensorModel& model, Score& score) const;
+
   Halves halves_;
   quality::SurfelSettings settings_;
-  quality::Surfels surfels_;
-  std::optional<estimate::PlacedBeams> reference_;  ///< the held-out beams by the selecting model
-  std::vector<float> given_noise_;                  ///< relative noise of the held-out beams
-  double noise_ = 0;                                ///< [σ] of the residuals of the selecting model
+  std::vector<Choice> choices_;
 };
 
 }  // namespace crisp::diagnose

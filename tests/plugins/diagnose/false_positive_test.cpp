@@ -116,7 +116,7 @@ TEST(FalsePositives, HeldOutPointsAreNotSelectedByTheTestedModel) {
   Calibration wrong = nominal_calibration(default_rig());
   add_requested_terms(wrong, {"laser2.range.offset"}, built_in_terms());
   test::term_of(wrong, "laser2.range.offset").parameters.at(0).value = 0.01;
-  const CrossValidator held_out(halves_of(covered(recording.sample(), -0.05, 0.05)), plain, {});
+  const CrossValidator held_out(halves_of(covered(recording.sample(), -0.05, 0.05)), {plain}, {});
   const auto gains =
       CrossValidator::gains(held_out.score(plain), held_out.score(SensorModel(wrong, built_in_terms())));
   EXPECT_GT(gains.at(0).ci95[0], 0) << "thickness";

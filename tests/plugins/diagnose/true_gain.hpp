@@ -24,8 +24,8 @@ inline TrueThickness true_thickness(const Recording& hidden, const Recording& cl
     return diagnose::halves_of(estimate::covered(of.sample(), -0.05, 0.05));
   };
   const auto truth = [](const Recording& of) { return SensorModel(of.scanner.truth, built_in_terms()); };
-  return {.with_truth = thickness_of(diagnose::CrossValidator(halves(hidden), before, {}), truth(hidden)),
-          .clean = thickness_of(diagnose::CrossValidator(halves(clean), truth(clean), {}), truth(clean))};
+  return {.with_truth = thickness_of(diagnose::CrossValidator(halves(hidden), {before}, {}), truth(hidden)),
+          .clean = thickness_of(diagnose::CrossValidator(halves(clean), {truth(clean)}, {}), truth(clean))};
 }
 
 }  // namespace crisp::test
