@@ -123,6 +123,14 @@ std::vector<Hypothesis> CandidateSearch::needs(const std::set<std::string>& reje
   return needs_in(all_, settings_.selection, rejected);
 }
 
+std::vector<Hypothesis> CandidateSearch::needs_of(const std::vector<Candidate>& some) const {
+  std::set<std::string> others;
+  for (const Candidate& one : all_.jacobian.candidates()) {
+    if (std::ranges::find(some, one.name, &Candidate::name) == some.end()) others.insert(one.name);
+  }
+  return needs_in(all_, settings_.selection, others);
+}
+
 /// Screens candidates for the refined search: the model's own, and the best forms of those whose gain exceeds
 /// its expectation under the null hypothesis, given the model's candidates or all but one of them.
 std::vector<Candidate> CandidateSearch::promising() const {

@@ -61,6 +61,9 @@ class CandidateSearch {
   /// @param rejected  names of candidates that are excluded from the selection
   std::vector<Hypothesis> needs(const std::set<std::string>& rejected) const;
 
+  /// The same among some candidates only.
+  std::vector<Hypothesis> needs_of(const std::vector<Candidate>& some) const;
+
   /// Repeats the selection with more beams, which detects smaller effects. Besides the families that the
   /// model has, it selects causes' own formulas only: real walls have small shapes that descriptions would
   /// fit.

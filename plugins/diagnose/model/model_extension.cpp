@@ -39,6 +39,18 @@ class ModelExtension {
       : fits_(fits), terms_(terms), settings_(settings), report_(report), rejected_(std::move(excluded)) {}
 
   void run(Diagnosis& result) {
+    search(result);
+    if (!explains_all(result.after)) return_to_one_that_explains_all(result);
+  }
+
+ private:
+  /// A model that the search had.
+  struct Tested {
+    std::vector<Candidate> chosen;
+    estimate::Refinement fit;
+  };
+
+  void search(Diagnosis& result) {
     for (round_ = 0; round_ <= settings_.rounds; ++round_) {
       progress(0, "testing all candidates");
       const SurfaceObservations& observations = fits_.observed(result.after);
@@ -63,13 +75,32 @@ class ModelExtension {
       try {
         result.after = fits_.refined(with_terms(result.after.outcome.model.calibration(), chosen_),
                                      {.detail = estimate::Detail::kModel, .equation_beams = kTestedBeams});
+        tested_.push_back({.chosen = chosen_, .fit = result.after});
       } catch (const estimate::UncoveredBeams&) {
         if (!reject_new_time_terms(before)) throw;
       }
     }
   }
 
- private:
+  bool explains_all(const estimate::Refinement& fit) const {
+    return fits_.compared(fit).p_value > settings_.selection.p_value;
+  }
+
+  /// Each selection holds near its own model only, and may leave one that explains all. Of several the one
+  /// that agrees best with its simulation.
+  void return_to_one_that_explains_all(Diagnosis& result) {
+    progress(0.9, "comparing the models that were tested");
+    const auto found = std::ranges::max_element(
+        tested_, {}, [this](const Tested& one) { return fits_.compared(one.fit).p_value; });
+    if (found == tested_.end() || !explains_all(found->fit)) return;
+    result.after = found->fit;
+    const CandidateSearch tests(fits_.observed(result.after), result.after, terms_, settings_,
+                                fits_.compared(result.after));
+    result.hypotheses = tests.needs_of(found->chosen);
+    result.unobservable = tests.unobservable(result.hypotheses);
+    result.settled = names_of(result.hypotheses) == names_of(found->chosen);
+  }
+
   void progress(double of_round, const char* what) const {
     fits_.stop_if_requested();
     const double fraction = 0.8 * (round_ + 0.25 + of_round) / (round_ + 2.25);
@@ -142,6 +173,7 @@ class ModelExtension {
   std::vector<Candidate> chosen_;   ///< candidates of the current model
   std::set<std::string> rejected_;  ///< candidates that an earlier model had and did not need, or excluded
   std::set<std::string> replaced_;  ///< candidates in whose place another came once
+  std::vector<Tested> tested_;      ///< in the order of the search
   bool is_close_ = false;           ///< whether the refined search (more beams, causes only) runs
 };
 
