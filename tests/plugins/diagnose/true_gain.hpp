@@ -17,14 +17,15 @@ inline double thickness_of(const diagnose::CrossValidator& held_out, const Senso
   return diagnose::CrossValidator::gains(score, score).at(0).after;
 }
 
-/// @param before  the diagnosis's model without the effect: it selects the surfaces
+/// @param before  the diagnosis's model without the effect: it selects surfaces, and so does the truth
 inline TrueThickness true_thickness(const Recording& hidden, const Recording& clean,
                                     const SensorModel& before) {
   const auto halves = [](const Recording& of) {
     return diagnose::halves_of(estimate::covered(of.sample(), -0.05, 0.05));
   };
   const auto truth = [](const Recording& of) { return SensorModel(of.scanner.truth, built_in_terms()); };
-  return {.with_truth = thickness_of(diagnose::CrossValidator(halves(hidden), {before}, {}), truth(hidden)),
+  return {.with_truth = thickness_of(diagnose::CrossValidator(halves(hidden), {before, truth(hidden)}, {}),
+                                     truth(hidden)),
           .clean = thickness_of(diagnose::CrossValidator(halves(clean), {truth(clean)}, {}), truth(clean))};
 }
 
