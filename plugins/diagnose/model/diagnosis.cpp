@@ -68,17 +68,13 @@ class Diagnoser {
     for (const Hypothesis& one : result.hypotheses) {
       if (!one.accepted && one.candidate.is_cause()) rejected.insert(one.candidate.name);
     }
-    if (rejected.empty() || explains_all(result)) return;
+    if (rejected.empty() || fits_.explains_all(result.after)) return;
     const DiagnosisReporter progress = [this](double fraction, const std::string& what) {
       report(0.8 + 0.1 * fraction, "without the rejected causes, " + what);
     };
     Diagnosis other = search(result.before, rejected, progress);
     const bool is_extended = std::ranges::any_of(other.hypotheses, &Hypothesis::accepted);
-    if (is_extended && explains_all(other)) result = std::move(other);
-  }
-
-  bool explains_all(const Diagnosis& result) const {
-    return fits_.compared(result.after).p_value > settings_.selection.p_value;
+    if (is_extended && fits_.explains_all(other.after)) result = std::move(other);
   }
 
   bool has_open_questions(const Diagnosis& result) const {

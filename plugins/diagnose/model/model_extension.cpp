@@ -40,7 +40,7 @@ class ModelExtension {
 
   void run(Diagnosis& result) {
     search(result);
-    if (!explains_all(result.after)) return_to_one_that_explains_all(result);
+    if (!fits_.explains_all(result.after)) return_to_one_that_explains_all(result);
   }
 
  private:
@@ -82,17 +82,13 @@ class ModelExtension {
     }
   }
 
-  bool explains_all(const estimate::Refinement& fit) const {
-    return fits_.compared(fit).p_value > settings_.selection.p_value;
-  }
-
   /// Each selection holds near its own model only, and may leave one that explains all. Of several the one
   /// that agrees best with its simulation.
   void return_to_one_that_explains_all(Diagnosis& result) {
     progress(0.9, "comparing the models that were tested");
     const auto found = std::ranges::max_element(
         tested_, {}, [this](const Tested& one) { return fits_.compared(one.fit).p_value; });
-    if (found == tested_.end() || !explains_all(found->fit)) return;
+    if (found == tested_.end() || !fits_.explains_all(found->fit)) return;
     result.after = found->fit;
     const CandidateSearch tests(fits_.observed(result.after), result.after, terms_, settings_,
                                 fits_.compared(result.after));

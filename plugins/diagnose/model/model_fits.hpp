@@ -51,6 +51,11 @@ class ModelFits {
   /// Residuals of the fit compared with those of a simulated scanner.
   const ProfileComparison& compared(const estimate::Refinement& fit) const;
 
+  /// Whether these residuals agree with the simulation.
+  bool explains_all(const estimate::Refinement& fit) const {
+    return compared(fit).p_value > settings_.selection.p_value;
+  }
+
   /// @throws Interrupted  when the settings' `interrupted` returns true
   void stop_if_requested() const;
 

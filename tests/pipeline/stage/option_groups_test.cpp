@@ -136,38 +136,5 @@ TEST_F(GroupsOfOptions, HaveTablesOfTheirOwnInTheReference) {
   EXPECT_THAT(text, HasSubstr("\nmotion: {rate: …} (how it moves):\n  rate "));
 }
 
-struct NoOperation : Stage {
-  void process(const Inputs&, Outputs&, Context&) override {}
-  int value = 0;
-};
-struct GroupWithoutHelp : NoOperation {
-  static void describe(StageDescription<GroupWithoutHelp>& d) {
-    d.name("toy.bad").summary("-").option("motion.rate", &GroupWithoutHelp::value, "rate");
-  }
-};
-struct GroupAndOption : NoOperation {
-  static void describe(StageDescription<GroupAndOption>& d) {
-    d.name("toy.bad").summary("-").group("motion", "how it moves");
-    d.option("motion", &GroupAndOption::value, "motion");
-    d.option("motion.rate", &GroupAndOption::value, "rate");
-  }
-};
-
-template <class Wrong>
-std::string refusal_of() {
-  Registrar registrar;
-  try {
-    registrar.stage<Wrong>();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
-TEST_F(GroupsOfOptions, NeedHelpAndANameOfTheirOwn) {
-  EXPECT_THAT(refusal_of<GroupWithoutHelp>(), HasSubstr("'motion.rate' wrongly: its group has no help"));
-  EXPECT_THAT(refusal_of<GroupAndOption>(), HasSubstr("'motion' wrongly: a group has the same name"));
-}
-
 }  // namespace
 }  // namespace crisp

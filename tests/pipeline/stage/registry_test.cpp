@@ -50,6 +50,21 @@ struct TakesTwice : Idle {
   }
 };
 
+struct GroupWithoutHelp : Idle {
+  int rate = 0;
+  static void describe(StageDescription<GroupWithoutHelp>& d) {
+    d.name("toy.bad").summary("-").option("motion.rate", &GroupWithoutHelp::rate, "rate");
+  }
+};
+struct GroupAndOption : Idle {
+  int value = 0;
+  static void describe(StageDescription<GroupAndOption>& d) {
+    d.name("toy.bad").summary("-").group("motion", "how it moves");
+    d.option("motion", &GroupAndOption::value, "motion");
+    d.option("motion.rate", &GroupAndOption::value, "rate");
+  }
+};
+
 TEST(StageRegistry, RefusesDescriptionsThatCannotBeRight) {
   EXPECT_THAT(refusal<Nameless>(), HasSubstr("'Nameless' is not a stage's name"));
   EXPECT_THAT(refusal<BadDefault>(),
@@ -57,6 +72,8 @@ TEST(StageRegistry, RefusesDescriptionsThatCannotBeRight) {
   EXPECT_THAT(refusal<NamelessChoice>(), HasSubstr("an enumeration needs choices()"));
   EXPECT_THAT(refusal<HoldsOnly>(), HasSubstr("takes none that makes it run"));
   EXPECT_THAT(refusal<TakesTwice>(), HasSubstr("takes Sum twice"));
+  EXPECT_THAT(refusal<GroupWithoutHelp>(), HasSubstr("'motion.rate' wrongly: its group has no help"));
+  EXPECT_THAT(refusal<GroupAndOption>(), HasSubstr("'motion' wrongly: a group has the same name"));
 }
 
 TEST(StageRegistry, RefusesASecondStageOfTheSameNameWithBothOrigins) {
