@@ -48,10 +48,10 @@ Eigen::VectorXd ranges_of(const ParameterPrior& range, const SensorModel& model,
                           const std::vector<std::size_t>& free) {
   Eigen::VectorXd ranges(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
-    const EffectParameter* term = declared(model, free[i]);
+    const std::string& name = model.names()[free[i]];
+    const EffectParameter* term = range.nominal.contains(name) ? nullptr : declared(model, free[i]);
     const double width = term ? term->upper - term->lower : 0;
-    ranges[static_cast<Eigen::Index>(i)] =
-        width > 0 ? kOfBounds * width : range_of(range, model.names()[free[i]]);
+    ranges[static_cast<Eigen::Index>(i)] = width > 0 ? kOfBounds * width : range_of(range, name);
   }
   return ranges;
 }
@@ -69,6 +69,17 @@ Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model
     centre += is_angle ? std::remainder(off, 2 * std::numbers::pi) : off;
   }
   return centres;
+}
+
+Eigen::VectorXd nominal_information(const ParameterPrior& range, const SensorModel& model,
+                                    const std::vector<std::size_t>& parameters) {
+  Eigen::VectorXd information = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto known = range.nominal.find(model.names()[parameters[i]]);
+    if (known == range.nominal.end()) continue;
+    information[static_cast<Eigen::Index>(i)] = 1 / std::pow(range.reach * known->second.std_error, 2);
+  }
+  return information;
 }
 
 bool is_amplitude(const SensorModel& model, std::size_t parameter) {

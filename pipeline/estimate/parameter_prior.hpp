@@ -65,6 +65,10 @@ bool is_amplitude(const SensorModel& model, std::size_t parameter);
 Eigen::VectorXd prior_means(const ParameterPrior& range, const SensorModel& start,
                             const std::vector<std::size_t>& free);
 
+/// [1/unit²] Information on each parameter by nominal values; 0 where there is none.
+Eigen::VectorXd nominal_information(const ParameterPrior& range, const SensorModel& model,
+                                    const std::vector<std::size_t>& parameters);
+
 /// The centres of the search: the rig's nominal value where it has a standard deviation, else the model's.
 Eigen::VectorXd centres_of(const ParameterPrior& range, const SensorModel& model,
                            const std::vector<std::size_t>& free);

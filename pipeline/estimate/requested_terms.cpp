@@ -20,6 +20,28 @@ bool is_of(const std::string& parameter, const std::string& term) {
   return with_owner == term || with_owner.substr(with_owner.find('.') + 1) == term;
 }
 
+/// A parameter's term, and its index among those of the term.
+struct Declaration {
+  const TermInfo* term = nullptr;  ///< null for λ, τ, α and η
+  std::size_t index = 0;
+};
+
+Declaration declaration_of(const SensorModel& model, std::size_t parameter) {
+  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
+    const LaserChain& chain = model.chain(laser);
+    const auto slot = std::ranges::find(chain.slots, parameter);
+    if (slot == chain.slots.end()) continue;
+    const auto at = static_cast<std::size_t>(slot - chain.slots.begin());
+    for (const auto& phase : chain.phases) {
+      for (const auto& [term, first] : phase) {
+        if (at >= first && at < first + term->info().parameters.size())
+          return {.term = &term->info(), .index = at - first};
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 void add_requested_terms(Calibration& calibration, const std::vector<std::string>& requested,
@@ -41,19 +63,13 @@ void add_requested_terms(Calibration& calibration, const std::vector<std::string
 }
 
 const EffectParameter* declared(const SensorModel& model, std::size_t parameter) {
-  for (std::size_t laser = 0; laser < model.lasers(); ++laser) {
-    const LaserChain& chain = model.chain(laser);
-    const auto slot = std::ranges::find(chain.slots, parameter);
-    if (slot == chain.slots.end()) continue;
-    const auto at = static_cast<std::size_t>(slot - chain.slots.begin());
-    for (const auto& phase : chain.phases) {
-      for (const auto& [term, first] : phase) {
-        const auto& parameters = term->info().parameters;
-        if (at >= first && at < first + parameters.size()) return &parameters[at - first];
-      }
-    }
-  }
-  return nullptr;
+  const Declaration declaration = declaration_of(model, parameter);
+  return declaration.term != nullptr ? &declaration.term->parameters[declaration.index] : nullptr;
+}
+
+bool is_of_base_model(const SensorModel& model, std::size_t parameter) {
+  const Declaration declaration = declaration_of(model, parameter);
+  return declaration.term == nullptr || declaration.term->is_nuisance;
 }
 
 std::vector<std::size_t> parameters_of(const SensorModel& model, const std::vector<std::string>& requested,

@@ -18,6 +18,9 @@ void add_requested_terms(Calibration& calibration, const std::vector<std::string
 /// A term's declaration of its parameter; nullptr for λ, τ, α and η.
 const EffectParameter* declared(const SensorModel& model, std::size_t parameter);
 
+/// Whether the parameter is one of the base model: λ, τ, α, η, or that of a nuisance term.
+bool is_of_base_model(const SensorModel& model, std::size_t parameter);
+
 /// The amplitude parameters of such terms.
 ///
 /// @param forms  whether shape parameters are included as well, but for instants, which have no derivative

@@ -87,6 +87,9 @@ struct TermInfo {
   std::string level = {};
   bool is_fine =
       false;  ///< for an empirical term: it has many parameters, and is fitted only to the others' residual
+  /// Whether its parameters belong to the base model, since their standard deviations are known from
+  /// elsewhere: it is no candidate cause.
+  bool is_nuisance = false;
 };
 
 /// The cause whose family the term belongs to: all forms that the same physics can take, with the same

@@ -87,12 +87,45 @@ struct ClockDrift final : DifferentiableTerm<ClockDrift> {
   }
 };
 
+/// Error of a clock's line, which telegrams' delays determine with a standard error.
+struct ClockSkew final : DifferentiableTerm<ClockSkew> {
+  const TermInfo& info() const override {
+    static const TermInfo kInfo{
+        .name = "clock.skew",
+        .summary = "the constant rate of a device's clock is off",
+        .phase = Phase::kTime,
+        .scope = Scope::kLaser,
+        .parameters = {{.name = "skew",
+                        .unit = "1",
+                        .lower = -0.01,
+                        .upper = 0.01,
+                        .summary = "hub seconds per device second − 1, beyond the assumed rate"},
+                       {.name = "middle",
+                        .unit = "s",
+                        .lower = -1e5,
+                        .upper = 1e5,
+                        .summary = "time since the run's epoch at which the clock is right",
+                        .shape = true}},
+        .details =
+            "`t + skew (t − middle)`, t since the run's epoch. The shortest delays of telegrams determine a clock's rate with a standard error of some ppm within seconds. With that as its prior, the diagnosis estimates the skew together with λ, τ, α and η (a nuisance parameter). It is no cause; a changing rate is clock.drift, which telegrams are simulated with.",
+        .resolvable_by = "a longer recording",
+        .counts_from = CountsFrom::kRunsEpoch,
+        .is_nuisance = true};
+    return kInfo;
+  }
+  template <class T>
+  void change(Beam<T>& beam, std::span<const T> p) const {
+    beam.time += p[0] * (beam.hub_time - p[1]);
+  }
+};
+
 }  // namespace
 
 void register_timing_terms(TermRegistry& terms) {
   terms.add(std::make_shared<IntraScan>());
   terms.add(std::make_shared<MirrorPeriod>());
   terms.add(std::make_shared<ClockDrift>());
+  terms.add(std::make_shared<ClockSkew>());
 }
 
 }  // namespace crisp::model

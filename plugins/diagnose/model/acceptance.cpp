@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "plugins/diagnose/model/clock_lines.hpp"
 #include "plugins/diagnose/model/residual_variance.hpp"
 #include "plugins/diagnose/model/significance.hpp"
 
@@ -14,7 +13,7 @@ namespace crisp::diagnose {
 namespace {
 
 /// Refits the model to the accepted hypotheses.
-void refit_accepted(Diagnosis& diagnosis, const AcceptanceFits& fits) {
+void refit_accepted(Diagnosis& diagnosis, const AcceptanceFits& fits, const TermRegistry& terms) {
   std::vector<Candidate> kept;
   for (const Hypothesis& hypothesis : diagnosis.hypotheses) {
     if (hypothesis.accepted) kept.push_back(hypothesis.candidate);
@@ -24,20 +23,20 @@ void refit_accepted(Diagnosis& diagnosis, const AcceptanceFits& fits) {
     return;
   }
   const Calibration found = diagnosis.after.outcome.model.calibration();
-  diagnosis.after = fits.refit(with_terms(found, with_values_of(found, kept)));
+  diagnosis.after = fits.refit(with_terms(found, with_values_of(found, kept), terms));
 }
 
 /// Rules 2 to 4, for the hypotheses that are accepted so far.
 void judge(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
            const TermRegistry& terms, const DiagnosisSettings& settings) {
   std::vector<Hypothesis>& all = diagnosis.hypotheses;
-  accept_if_it_generalizes(all, plain, diagnosis.after.outcome.model.calibration(), fits.held_out);
-  if (!std::ranges::all_of(all, &Hypothesis::accepted)) refit_accepted(diagnosis, fits);
+  accept_if_it_generalizes(all, plain, diagnosis.after.outcome.model.calibration(), fits.held_out, terms);
+  if (!std::ranges::all_of(all, &Hypothesis::accepted)) refit_accepted(diagnosis, fits, terms);
   while (reject_insignificant(all, diagnosis.after.outcome, terms, settings.selection.p_value))
-    refit_accepted(diagnosis, fits);
+    refit_accepted(diagnosis, fits, terms);
   const double noise = settings.refinement.surfels.noise;
   while (reject_if_residual_exceeds(all, fits.compare(diagnosis.after), noise))
-    refit_accepted(diagnosis, fits);
+    refit_accepted(diagnosis, fits, terms);
 }
 
 /// Accepts effects that surfaces resemble, if they explain all that is left: surfaces resemble no cause that
@@ -62,7 +61,7 @@ bool explains_the_rest(Diagnosis& with, const std::vector<std::size_t>& small, d
 }  // namespace
 
 void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
-                      const TermRegistry& terms, const DiagnosisSettings& settings, double middle) {
+                      const TermRegistry& terms, const DiagnosisSettings& settings) {
   const double smallest = settings.selection.p_value;
   Diagnosis with = diagnosis;
   reject_scene_artifacts(diagnosis.hypotheses);
@@ -78,10 +77,6 @@ void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, 
     if (explains_the_rest(with, small, fits.compare(with.after).p_value, smallest))
       diagnosis = std::move(with);
   }
-  const double of_one_parameter =
-      std::log(static_cast<double>(std::max<std::size_t>(1, diagnosis.after.beams)));
-  mark_clock_lines(diagnosis.hypotheses, diagnosis.after.outcome, settings.skew_errors, middle,
-                   settings.selection.bic + of_one_parameter);
 }
 
 }  // namespace crisp::diagnose

@@ -24,11 +24,8 @@ struct AcceptanceFits {
 /// 3. It must be significant in the joint fit (Wald test; score test if parameters are held).
 /// 4. A cause must explain more than the systematic residual that the extended model leaves.
 ///
-/// A constant skew within the error of a clock's line is kept, but marked as no cause (see clock_lines.hpp).
-///
-/// @param plain   held-out score of the model without hypotheses
-/// @param middle  [s] of the recording, on the hub's clock
+/// @param plain  held-out score of the model without hypotheses
 void accept_or_reject(Diagnosis& diagnosis, const CrossValidator::Score& plain, const AcceptanceFits& fits,
-                      const TermRegistry& terms, const DiagnosisSettings& settings, double middle);
+                      const TermRegistry& terms, const DiagnosisSettings& settings);
 
 }  // namespace crisp::diagnose

@@ -118,6 +118,18 @@ Eigen::VectorXd CandidateJacobian::sizes_of(std::size_t candidate) const {
   return values;
 }
 
+void CandidateJacobian::add_prior(quality::NormalEquations& equations,
+                                  const estimate::ParameterPrior& prior) const {
+  const auto n = static_cast<Eigen::Index>(base_);
+  const std::vector<std::size_t> base(free_.begin(), free_.begin() + n);
+  const Eigen::VectorXd off = estimate::picked(model_, base) - estimate::centres_of(prior, model_, base);
+  const Eigen::VectorXd information =
+      equations.covariance_factor() * estimate::nominal_information(prior, model_, base);
+  equations.matrix.diagonal().head(n) += information;
+  equations.vector.head(n) += information.cwiseProduct(off);
+  equations.chi2 += information.dot(off.cwiseAbs2());
+}
+
 quality::DerivativeRows CandidateJacobian::rows(const estimate::Sample& sample) const {
   return [this, &sample](const quality::Surfel& surfel, std::span<const std::uint32_t> beams,
                          std::span<const double> range_change, std::span<double> rows) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/estimate/parameter_prior.hpp"
 #include "pipeline/estimate/sample.hpp"
 #include "pipeline/model/added_terms.hpp"
 #include "pipeline/quality/surfel_equations.hpp"
@@ -11,12 +12,12 @@
 
 namespace crisp::diagnose {
 
-/// Jacobian of the ranges with respect to the base parameters (λ, τ, α, η) and the size parameters of every
-/// candidate, whether the model has the candidate's term or not.
+/// Jacobian of the ranges with respect to the base parameters (λ, τ, α, η, skews of clocks) and the size
+/// parameters of every candidate, whether the model has the candidate's term or not.
 class CandidateJacobian {
  public:
   /// @param model  the current model with its terms
-  /// @param base   indices of the estimated base parameters (λ, τ, α, η) in the model's values
+  /// @param base   indices of the estimated base parameters in the model's values
   CandidateJacobian(const SensorModel& model, std::vector<std::size_t> base,
                     std::vector<Candidate> candidates, const TermRegistry& terms);
 
@@ -31,6 +32,9 @@ class CandidateJacobian {
   const std::vector<std::size_t>& of(std::size_t candidate) const { return of_[candidate]; }
   /// Size parameters of the candidate less their neutral values, in the current model.
   Eigen::VectorXd sizes_of(std::size_t candidate) const;
+
+  /// Adds what is known of the base parameters from elsewhere: the rig's nominal values, and clock lines.
+  void add_prior(quality::NormalEquations& equations, const estimate::ParameterPrior& prior) const;
 
   /// Rows of the Jacobian: range changes normal to the surfels. They refer to `sample` and to this object,
   /// which must outlive them.

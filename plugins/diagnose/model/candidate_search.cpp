@@ -15,12 +15,12 @@ namespace crisp::diagnose {
 std::vector<std::size_t> base_of(const estimate::Refinement& refinement) {
   std::vector<std::size_t> base;
   for (const std::size_t parameter : refinement.outcome.free) {
-    if (!estimate::declared(refinement.outcome.model, parameter)) base.push_back(parameter);
+    if (estimate::is_of_base_model(refinement.outcome.model, parameter)) base.push_back(parameter);
   }
   // Held parameters may have errors, which no candidate may explain.
   for (const Unobservable& held : refinement.outcome.unobservable) {
     const std::size_t parameter = refinement.outcome.model.index(held.parameter);
-    if (!estimate::declared(refinement.outcome.model, parameter)) base.push_back(parameter);
+    if (estimate::is_of_base_model(refinement.outcome.model, parameter)) base.push_back(parameter);
   }
   return base;
 }

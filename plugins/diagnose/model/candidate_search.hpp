@@ -24,7 +24,6 @@ struct DiagnosisSettings {
   double min_effect = 0.008;  ///< [σ] minimum effect of a cause in the refined search (RMS change of ranges)
   int rounds = 8;             ///< maximum number of model extensions
   std::set<std::string> excluded = {};     ///< candidates that are already estimated from other data
-  std::vector<double> skew_errors = {};    ///< by laser: see skew_errors(); none: the clocks are exact
   std::function<bool()> interrupted = {};  ///< cancellation query, called from several threads
 };
 
@@ -35,8 +34,8 @@ struct Limit {
   std::string combination;  ///< identifiable combination instead: see known_instead()
 };
 
-/// Indices of the base parameters (λ, τ, α, η) that a refinement estimated, or held since they are
-/// unobservable.
+/// Indices of the base model's parameters (λ, τ, α, η, skews of clocks) that a refinement estimated, or held
+/// since they are unobservable.
 std::vector<std::size_t> base_of(const estimate::Refinement& refinement);
 
 /// Score tests of all candidates at one model (Rao's score test on the linearized problem).

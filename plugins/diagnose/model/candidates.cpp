@@ -102,7 +102,7 @@ std::vector<Candidate> candidates(const TermRegistry& terms, const Calibration& 
   std::vector<Candidate> all;
   for (const std::string& name : terms.names()) {
     const auto term = terms.get(name);
-    if (!coverage.shares(term->info().counts_from)) continue;
+    if (term->info().is_nuisance || !coverage.shares(term->info().counts_from)) continue;
     const std::string level = level_of(term->info(), terms);
     if (term->info().scope == Scope::kPlate) {
       append(all, {.owner = calibration.lasers.size(), .name = name, .level = level}, calibration.plate_terms,
@@ -122,7 +122,8 @@ std::vector<std::string> unshared_causes(const TermRegistry& terms, const Covera
   std::vector<std::string> causes;
   for (const std::string& name : terms.names()) {
     const TermInfo& info = terms.get(name)->info();
-    const bool is_cause = info.covariate.empty() && info.family.empty();  // not one more form of another
+    const bool is_cause =
+        !info.is_nuisance && info.covariate.empty() && info.family.empty();  // not one more form of another
     if (is_cause && !coverage.shares(info.counts_from)) causes.push_back(name);
   }
   return causes;
@@ -152,9 +153,11 @@ void add_to(Calibration& calibration, const Candidate& candidate) {
   terms_of(calibration, candidate.owner).push_back(candidate.term);
 }
 
-Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen) {
-  for (auto& laser : calibration.lasers) laser.terms.clear();
-  calibration.plate_terms.clear();
+Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen,
+                       const TermRegistry& terms) {
+  const auto is_tested = [&](const TermParameters& one) { return !terms.get(one.term)->info().is_nuisance; };
+  for (auto& laser : calibration.lasers) std::erase_if(laser.terms, is_tested);
+  std::erase_if(calibration.plate_terms, is_tested);
   for (const Candidate& candidate : chosen) add_to(calibration, candidate);
   return calibration;
 }

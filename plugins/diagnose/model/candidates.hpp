@@ -98,8 +98,9 @@ const TermParameters* find_term(const std::vector<TermParameters>& terms, const 
 /// Adds the candidate's term to the calibration.
 void add_to(Calibration& calibration, const Candidate& candidate);
 
-/// Replaces all terms of the calibration by the candidates' terms.
-Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen);
+/// Replaces all terms of the calibration but nuisances by the candidates' terms.
+Calibration with_terms(Calibration calibration, const std::vector<Candidate>& chosen,
+                       const TermRegistry& terms);
 
 /// Sets the candidates' values to the calibration's.
 std::vector<Candidate> with_values_of(const Calibration& calibration, std::vector<Candidate> chosen);

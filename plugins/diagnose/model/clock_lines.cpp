@@ -3,34 +3,16 @@
 
 #include <cmath>
 
-#include "plugins/diagnose/model/significance.hpp"
+#include <crisp/effect_catalogue.hpp>
+
+#include "pipeline/estimate/requested_terms.hpp"
 
 namespace crisp::diagnose {
 namespace {
 
-constexpr const char* kDrift = "clock.drift";  // its parameters are the skew at the epoch and its growth
-constexpr double kLineErrors = 3;              // [standard errors]
+constexpr const char* kTerm = "clock.skew";
 
-struct Drift {
-  Parameter skew;
-  Parameter growth;  ///< [1/s]
-};
-
-Parameter estimated(const estimate::Outcome& outcome, Eigen::Index at) {
-  const auto parameter = outcome.free[static_cast<std::size_t>(at)];
-  return {.name = outcome.model.names()[parameter],
-          .unit = "1",
-          .value = outcome.model.values()[static_cast<Eigen::Index>(parameter)],
-          .std_error = std::sqrt(outcome.covariance(at, at))};
-}
-
-/// Empty for other hypotheses.
-std::optional<Drift> drift_of(const Hypothesis& hypothesis, const estimate::Outcome& outcome) {
-  if (hypothesis.candidate.term.term != kDrift || !hypothesis.candidate.laser()) return {};
-  const auto places = parameter_indices(hypothesis.candidate, outcome);
-  if (places.size() != 2 || !places[0] || !places[1]) return {};
-  return Drift{.skew = estimated(outcome, *places[0]), .growth = estimated(outcome, *places[1])};
-}
+std::string parameter_of(const std::string& laser) { return laser + "." + kTerm + ".skew"; }
 
 }  // namespace
 
@@ -45,27 +27,59 @@ std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, Cloc
   return errors;
 }
 
-void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
-                      const std::vector<double>& skew_errors, double middle, double least_chi2) {
-  for (Hypothesis& one : hypotheses) {
-    const auto drift = one.accepted ? drift_of(one, outcome) : std::nullopt;
-    if (!drift || one.candidate.owner >= skew_errors.size()) continue;
-    const double mean = drift->skew.value + drift->growth.value * middle;
-    const bool is_constant = std::pow(drift->growth.value / drift->growth.std_error, 2) < least_chi2;
-    const double error = std::hypot(drift->skew.std_error, skew_errors[one.candidate.owner]);
-    one.is_clock_line = is_constant && std::abs(mean) < kLineErrors * error;
+void add_clock_lines(Calibration& calibration, estimate::ParameterPrior& prior,
+                     const std::vector<double>& errors, double middle, const TermRegistry& terms) {
+  TermParameters term = neutral_parameters(terms.get(kTerm)->info());
+  term.parameters[1].value = middle;
+  for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
+    LaserCalibration& own = calibration.lasers[laser];
+    std::erase_if(own.terms, [](const TermParameters& one) { return one.term == kTerm; });
+    if (!(errors[laser] > 0)) continue;
+    own.terms.push_back(term);
+    prior.nominal[parameter_of(own.name)] = {.value = 0, .std_error = errors[laser]};
   }
 }
 
-std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypotheses,
-                                             const estimate::Outcome& outcome) {
+estimate::Outcome without_clock_lines(const estimate::Outcome& outcome, const TermRegistry& terms) {
+  Calibration calibration = outcome.model.calibration();
+  for (LaserCalibration& laser : calibration.lasers) {
+    std::erase_if(laser.terms, [](const TermParameters& one) { return one.term == kTerm; });
+  }
+  estimate::Outcome without = outcome;
+  without.model = SensorModel(calibration, terms);
+  without.free.clear();
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+    const std::string& name = outcome.model.names()[outcome.free[k]];
+    const auto same = std::ranges::find(without.model.names(), name);
+    if (same == without.model.names().end()) continue;
+    kept.push_back(k);
+    without.free.push_back(static_cast<std::size_t>(same - without.model.names().begin()));
+  }
+  without.covariance = Eigen::MatrixXd(outcome.covariance(kept, kept));
+  return without;
+}
+
+std::optional<EstimatorArtifact> clock_lines(const estimate::Outcome& outcome,
+                                             const estimate::ParameterPrior& prior) {
+  constexpr double kBetter = 0.5;  // of the stamps' standard error
   EstimatorArtifact found{
       .name = "clock_line",
       .parameters = {},
       .reason =
-          "the rates of clocks from the telegrams' delays are off by less than three of their standard errors. The values are the corrections by the surfaces. Telegrams with shorter delays, or a longer recording, determine the rates better"};
-  for (const Hypothesis& one : hypotheses) {
-    if (one.is_clock_line) found.parameters.push_back(drift_of(one, outcome)->skew);
+          "the surfaces determine the rates of these clocks better than the delays of their telegrams do. The values are the corrections of the rates. Telegrams with shorter delays, or a longer recording, determine them better"};
+  for (std::size_t k = 0; k < outcome.free.size(); ++k) {
+    const std::size_t parameter = outcome.free[k];
+    const std::string& name = outcome.model.names()[parameter];
+    const auto known = prior.nominal.find(name);
+    if (known == prior.nominal.end() || !name.ends_with(std::string(".") + kTerm + ".skew")) continue;
+    const auto i = static_cast<Eigen::Index>(k);
+    const double error = std::sqrt(outcome.covariance(i, i));
+    if (error > kBetter * known->second.std_error) continue;
+    found.parameters.push_back({.name = name,
+                                .unit = "1",
+                                .value = outcome.model.values()[static_cast<Eigen::Index>(parameter)],
+                                .std_error = error});
   }
   if (found.parameters.empty()) return {};
   return found;

@@ -11,7 +11,7 @@
 #include <crisp/rig.hpp>
 
 #include "pipeline/estimate/outcome.hpp"
-#include "plugins/diagnose/model/hypothesis.hpp"
+#include "pipeline/estimate/parameter_prior.hpp"
 
 namespace crisp::diagnose {
 
@@ -19,17 +19,20 @@ namespace crisp::diagnose {
 /// without a map, which counts as exact.
 std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, ClockMap>& clocks);
 
-/// Marks accepted drifts of a laser's clock as errors of its clock line: the mean skew is within three of its
-/// standard errors, and the skew's change alone is too small to be selected as a cause. Such a drift corrects
-/// the line, and is no cause.
+/// Adds the skew of each clock line that is not exact (the term clock.skew) to the base model, with its
+/// standard error as its prior.
 ///
-/// @param middle      [s since the run's epoch] of the recording
-/// @param least_chi2  χ² from which on one parameter is selected
-void mark_clock_lines(std::vector<Hypothesis>& hypotheses, const estimate::Outcome& outcome,
-                      const std::vector<double>& skew_errors, double middle, double least_chi2);
+/// @param errors  by laser: see skew_errors()
+/// @param middle  [s since the run's epoch] of the recording, where each η is that of its clock
+void add_clock_lines(Calibration& calibration, estimate::ParameterPrior& prior,
+                     const std::vector<double>& errors, double middle, const TermRegistry& terms);
 
-/// The skews by which the lines of the clocks were corrected.
-std::optional<EstimatorArtifact> clock_lines(const std::vector<Hypothesis>& hypotheses,
-                                             const estimate::Outcome& outcome);
+/// The outcome without the skews of clock lines, which hold for its recording only. Each η is that in the
+/// middle of the recording.
+estimate::Outcome without_clock_lines(const estimate::Outcome& outcome, const TermRegistry& terms);
+
+/// The skews that the surfaces determine better than the stamps.
+std::optional<EstimatorArtifact> clock_lines(const estimate::Outcome& outcome,
+                                             const estimate::ParameterPrior& prior);
 
 }  // namespace crisp::diagnose

@@ -30,7 +30,7 @@ class Diagnoser {
 
   Diagnosis run() {
     report(0, "refining without any terms");
-    const estimate::Refinement plain = fits_.refined(with_terms(start_, {}));
+    const estimate::Refinement plain = fits_.refined(with_terms(start_, {}, terms_));
     fits_.limit_lags(plain.outcome.model);
     Diagnosis result = search(plain, {}, report_);
     search_without_rejected(result);
@@ -114,7 +114,7 @@ class Diagnoser {
                      {.held_out = held_out,
                       .refit = [this](const Calibration& start) { return fits_.refined(start); },
                       .compare = [this](const estimate::Refinement& fit) { return fits_.compared(fit); }},
-                     terms_, settings_, 0.5 * (sample_.plate->begin() + sample_.plate->end()));
+                     terms_, settings_);
     if (std::ranges::any_of(result.hypotheses, &Hypothesis::accepted))
       result.gains = CrossValidator::gains(plain, held_out(result.after.outcome.model.calibration()));
   }

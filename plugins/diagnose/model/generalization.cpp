@@ -25,15 +25,16 @@ AcceptanceTest cross_validation_of(const std::vector<Gain>& gains, bool is_name)
 /// Set of accepted hypotheses, extended one test at a time.
 class ForwardSelection {
  public:
-  ForwardSelection(CrossValidator::Score plain, const Calibration& found, const HeldOutScore& held_out)
-      : found_(found), held_out_(held_out), score_(std::move(plain)) {}
+  ForwardSelection(CrossValidator::Score plain, const Calibration& found, const HeldOutScore& held_out,
+                   const TermRegistry& terms)
+      : found_(found), held_out_(held_out), terms_(terms), score_(std::move(plain)) {}
 
   /// Tests whether some hypotheses jointly raise the held-out likelihood, and accepts them if so.
   bool accepts(const std::vector<Hypothesis*>& some) {
     auto tried = accepted_;
     for (const Hypothesis* hypothesis : some) tried.push_back(hypothesis->candidate);
     tried = with_values_of(found_, tried);
-    auto score = held_out_(with_terms(found_, tried));
+    auto score = held_out_(with_terms(found_, tried, terms_));
     const auto gains = CrossValidator::gains(score_, score);
     const bool is_name =
         std::ranges::any_of(some, [](const Hypothesis* one) { return one->candidate.is_cause(); });
@@ -52,6 +53,7 @@ class ForwardSelection {
  private:
   const Calibration& found_;
   const HeldOutScore& held_out_;
+  const TermRegistry& terms_;
   std::vector<Candidate> accepted_;
   CrossValidator::Score score_;
 };
@@ -59,8 +61,9 @@ class ForwardSelection {
 }  // namespace
 
 void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossValidator::Score& plain,
-                              const Calibration& found, const HeldOutScore& held_out) {
-  ForwardSelection selection(plain, found, held_out);
+                              const Calibration& found, const HeldOutScore& held_out,
+                              const TermRegistry& terms) {
+  ForwardSelection selection(plain, found, held_out, terms);
   std::vector<Hypothesis*> open;
   for (Hypothesis& hypothesis : hypotheses) {
     if (hypothesis.accepted) open.push_back(&hypothesis);

@@ -21,6 +21,7 @@ using HeldOutScore = std::function<CrossValidator::Score(const Calibration& star
 /// @param plain       score of the model without hypotheses
 /// @param found       calibration with all hypotheses; start of the other fits
 void accept_if_it_generalizes(std::vector<Hypothesis>& hypotheses, const CrossValidator::Score& plain,
-                              const Calibration& found, const HeldOutScore& held_out);
+                              const Calibration& found, const HeldOutScore& held_out,
+                              const TermRegistry& terms);
 
 }  // namespace crisp::diagnose

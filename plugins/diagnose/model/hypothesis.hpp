@@ -27,8 +27,7 @@ struct Hypothesis {
   std::vector<Gain> gains;                 ///< on held-out turns of the plate
   std::vector<AcceptanceTest> tests = {};  ///< each kind once, in the order of acceptance.hpp's rules
   bool accepted = true;                    ///< whether the extended model has it
-  bool is_clock_line = false;  ///< whether it corrects an error of the laser's clock line, and is no cause
-  std::string rejected = {};   ///< reason of the rejection; empty if accepted or not generalizing
+  std::string rejected = {};               ///< reason of the rejection; empty if accepted or not generalizing
 
   /// Records a test that decides: a hypothesis that does not pass is rejected.
   ///

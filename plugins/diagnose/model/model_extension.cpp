@@ -73,7 +73,7 @@ class ModelExtension {
         if (!candidate.other_forms.empty()) result.other_forms[candidate.name] = candidate.other_forms;
       }
       try {
-        result.after = fits_.refined(with_terms(result.after.outcome.model.calibration(), chosen_),
+        result.after = fits_.refined(with_terms(result.after.outcome.model.calibration(), chosen_, terms_),
                                      {.detail = estimate::Detail::kModel, .equation_beams = kTestedBeams});
         tested_.push_back({.chosen = chosen_, .fit = result.after});
       } catch (const estimate::UncoveredBeams&) {

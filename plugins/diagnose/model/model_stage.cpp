@@ -101,17 +101,20 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   settings_.refinement.angle_step = std::abs(context.rig().plate.angle_per_count());
   settings_.refinement.prior.nominal = estimate::nominal_values(context.rig());
   const auto& terms = context.run().registrar->get<TermRegistry>();
-  const SensorModel start(*start_, terms);
+  Calibration base = *start_;
   if (data::RecordingNumbers(*sample.plate).count() > 1) {
     context.progress(0, "estimating each recording's lags");
-    const estimate::RecordingLags lags = estimate::lags_of_recordings(start, sample, settings_.refinement);
+    const estimate::RecordingLags lags =
+        estimate::lags_of_recordings(SensorModel(base, terms), sample, settings_.refinement);
     sample = estimate::with_common_lags(std::move(sample), lags);
+  } else {
+    const double middle = 0.5 * (sample.plate->begin() + sample.plate->end());
+    add_clock_lines(base, settings_.refinement.prior, skew_errors(context.rig(), clocks_), middle, terms);
   }
-  settings_.skew_errors = skew_errors(context.rig(), clocks_);
   settings_.excluded = determined_by_stamps(all_);
   settings_.interrupted = [&context] { return context.interrupted(); };
   const Diagnosis diagnosis =
-      diagnose(start, sample, terms, settings_,
+      diagnose(SensorModel(base, terms), sample, terms, settings_,
                [&context](double fraction, const std::string& what) { context.progress(fraction, what); });
   if (!diagnosis.settled) {
     context.mark_untrusted(
@@ -124,7 +127,8 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
                             fmt::format("the residuals of the extended model agree with simulated noise ({})",
                                         data::chance_in_words(diagnosis.left_after.p_value)));
   }
-  Calibration calibration = estimate::calibration_of(diagnosis.after.outcome, context.rig());
+  Calibration calibration =
+      estimate::calibration_of(without_clock_lines(diagnosis.after.outcome, terms), context.rig());
   calibration.provenance = start_->provenance;
   calibration.provenance["diagnosis"] = "diagnose.model";
   calibration.quality = start_->quality;
@@ -136,7 +140,7 @@ void DiagnoseModelStage::finish(Outputs& out, Context& context) {
   }
   Findings findings = findings_of(diagnosis, calibration, terms, settings_.selection, noise_);
   for (const auto& artifact : {aliasing(sample), density_bias(*start_, diagnosis.before.outcome),
-                               clock_lines(diagnosis.hypotheses, diagnosis.after.outcome)}) {
+                               clock_lines(diagnosis.after.outcome, settings_.refinement.prior)}) {
     if (artifact) findings.artifacts.push_back(*artifact);
   }
   context.print(in_words(diagnosis, findings));

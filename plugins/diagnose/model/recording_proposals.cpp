@@ -164,18 +164,23 @@ class Predictor {
     if (!(equations.degrees_of_freedom > 0)) return {};
     const double met = static_cast<double>(sample.beams.size()) / static_cast<double>(pattern_.beams.size());
     const double beams = std::min(met * static_cast<double>(recorded_), static_cast<double>(settings_.beams));
-    return planned_with(std::move(equations), beams);
+    quality::NormalEquations planned = planned_with(std::move(equations), beams);
+    jacobian_->add_prior(planned, settings_.refinement.prior);
+    planned.vector.setZero();
+    planned.chi2 = 0;
+    return planned;
   }
 
-  /// Of both recordings together. Lags are each recording's own.
+  /// Of both recordings together. Lags and skews of clocks are each recording's own.
   quality::NormalEquations joint(const quality::NormalEquations& one,
                                  const quality::NormalEquations& other) const {
-    std::vector<std::size_t> lags;
+    std::vector<std::size_t> own;
     for (std::size_t column = 0; column < jacobian_->base(); ++column) {
-      if (jacobian_->names()[column].ends_with(".eta")) lags.push_back(column);
+      const std::string& name = jacobian_->names()[column];
+      if (name.ends_with(".eta") || name.ends_with(".skew")) own.push_back(column);
     }
-    quality::NormalEquations both = without(lags, one);
-    both += without(lags, other);
+    quality::NormalEquations both = without(own, one);
+    both += without(own, other);
     const double beams = std::min(static_cast<double>(both.beams), static_cast<double>(settings_.beams));
     return planned_with(std::move(both), beams);
   }

@@ -81,6 +81,7 @@ SurfaceObservations::SurfaceObservations(const SensorModel& model, estimate::Sam
     : sample_(std::move(sample)),
       placed_(model, sample_),
       settings_(settings.surfels),
+      prior_(settings.prior),
       interrupted_(std::move(interrupted)) {
   std::optional<Surfels> final;
   if (known != nullptr) final = known->of(sample_.beams).surfels;
@@ -106,8 +107,10 @@ quality::NormalEquations SurfaceObservations::equations(const CandidateJacobian&
     if (interrupted_ && interrupted_()) throw Interrupted();
     all(of_surfel...);
   };
-  return quality::normal_equations(quality::thinned(all_, most), beams(), jacobian.parameters(), rows,
-                                   settings_, shared_);
+  quality::NormalEquations equations = quality::normal_equations(
+      quality::thinned(all_, most), beams(), jacobian.parameters(), rows, settings_, shared_);
+  jacobian.add_prior(equations, prior_);
+  return equations;
 }
 
 }  // namespace crisp::diagnose

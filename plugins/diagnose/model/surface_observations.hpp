@@ -39,7 +39,7 @@ class SurfaceObservations {
   Coverage coverage() const { return coverage_; }
 
   /// Normal equations at the model, in the Jacobian's columns, with divisions into blocks of correlated
-  /// errors.
+  /// errors, and with the settings' prior of base parameters.
   ///
   /// @param most  number of beams used, evenly subsampled
   /// @throws Interrupted
@@ -50,6 +50,7 @@ class SurfaceObservations {
   estimate::PlacedBeams placed_;
   std::vector<float> noise_;  ///< relative noise of the beams; empty: equal
   quality::SurfelSettings settings_;
+  estimate::ParameterPrior prior_;
   quality::Surfels all_;      ///< with all beams
   quality::Surfels surfels_;  ///< with `most` of them
   Coverage coverage_;

@@ -114,7 +114,7 @@ bool is_level_of(const Hypothesis& one, const Hypothesis& other) {
          (one.candidate.is_level_of(other.candidate) || is_explained_by_level_of(other, one));
 }
 
-bool is_reported(const Hypothesis& one) { return one.candidate.is_cause() && !one.is_clock_line; }
+bool is_reported(const Hypothesis& one) { return one.candidate.is_cause(); }
 
 /// The hypothesis as part of which one is reported: the first member of its family, or that whose level it
 /// is.

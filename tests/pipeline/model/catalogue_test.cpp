@@ -24,6 +24,7 @@ TEST(Catalogue, HasEveryNameThatReportsAndProgramsUse) {
   EXPECT_EQ(names, (std::vector<std::string>{"base.motion",
                                              "base.tilt",
                                              "clock.drift",
+                                             "clock.skew",
                                              "clock.step",
                                              "encoder.backlash",
                                              "encoder.eccentricity",

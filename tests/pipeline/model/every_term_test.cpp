@@ -47,6 +47,7 @@ std::map<std::string, double> drawn(const TermInfo& info, std::mt19937_64& rando
     const double share = std::uniform_real_distribution<double>(0.01, 0.05)(random);
     values[p.name] = p.neutral + share * (random() % 2 == 0 ? p.upper - p.neutral : p.lower - p.neutral);
   }
+  if (info.name == "clock.skew") values["middle"] = 2;  // of hours, which the encoder readings do not cover
   if (info.name == "range.step") values["at"] = 2.004;  // where some beam feels its edge
   return values;
 }

@@ -9,6 +9,7 @@
 
 #include <crisp/error.hpp>
 
+#include "plugins/diagnose/model/clock_lines.hpp"
 #include "plugins/diagnose/report/findings_report.hpp"
 #include "tests/plugins/diagnose/hidden.hpp"
 #include "tests/plugins/diagnose/noise/drawn.hpp"
@@ -60,6 +61,21 @@ TEST(HiddenEffects, AnEccentricEncoderIsNamed) {
   expect_within_errors(diagnosis, recording, "encoder.eccentricity", 2);
   EXPECT_LT(diagnosis.left_before.p_value, 0.01) << "the simulation without it deviates from the data";
   EXPECT_GT(diagnosis.left_after.p_value, 0.01);
+}
+
+TEST(HiddenEffects, ASkewWithinTheErrorOfAClockIsNoCause) {
+  constexpr double kMiddle = 5;
+  const auto recording = test::hidden(26, 10, office(), {{"laser2.clock.skew", {18e-6, kMiddle}}});
+  EXPECT_THAT(test::names_in(test::diagnosed(recording)), ElementsAre("laser2.clock.drift"))
+      << "where the clock is exact";
+  Calibration start = nominal_calibration(recording.scanner.rig);
+  DiagnosisSettings settings;
+  add_clock_lines(start, settings.refinement.prior, {10e-6, 10e-6, 10e-6}, kMiddle, built_in_terms());
+  const Diagnosis diagnosis = crisp::diagnose::diagnose(SensorModel(start, built_in_terms()),
+                                                        recording.sample(), built_in_terms(), settings);
+  EXPECT_THAT(test::names_in(diagnosis), IsEmpty());
+  EXPECT_GT(diagnosis.left_after.p_value, 0.01);
+  expect_within_errors(diagnosis, recording, "laser2.clock.skew", 1);
 }
 
 TEST(HiddenEffects, AJumpOfRangesIsEstimatedWithItsTime) {

@@ -63,7 +63,7 @@ Diagnosis judged(double p_value_with) {
                               const bool has_both = terms_of(fit.outcome.model.calibration()) == 2;
                               return ProfileComparison{.p_value = has_both ? p_value_with : 1e-40};
                             }};
-  accept_or_reject(diagnosis, score(nominal_calibration(default_rig())), fits, built_in_terms(), {}, 5);
+  accept_or_reject(diagnosis, score(nominal_calibration(default_rig())), fits, built_in_terms(), {});
   return diagnosis;
 }
 

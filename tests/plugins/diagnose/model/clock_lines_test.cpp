@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <crisp/sensor_model.hpp>
 
+#include "plugins/diagnose/model/candidate_search.hpp"
+#include "plugins/diagnose/model/candidates.hpp"
 #include "tests/support/built_in_terms.hpp"
 
 namespace crisp {
@@ -14,79 +18,23 @@ using namespace crisp::diagnose;
 using namespace crisp::estimate;
 
 constexpr double kMiddle = 5;  // [s] of the recording
-constexpr double kLeast = 20;  // of χ²
 
-/// The second laser's drift, and its fit with this skew and growth, known to 1 ppm and 0.2 ppm/s.
-struct Fit {
-  Hypothesis drift;
-  Outcome outcome;
+/// The nominal calibration with lines of the clocks of the first and the third laser.
+struct Lines {
+  Calibration calibration = nominal_calibration(default_rig());
+  ParameterPrior prior;
+
+  Lines() { add_clock_lines(calibration, prior, {3e-6, 0, 4e-6}, kMiddle, built_in_terms()); }
+  SensorModel model() const { return SensorModel(calibration, built_in_terms()); }
 };
 
-Fit fit_of(double skew, double growth) {
-  TermParameters term = neutral_parameters(built_in_terms().get("clock.drift")->info());
-  Hypothesis drift;
-  drift.candidate = {.owner = 1, .term = term, .name = "laser2.clock.drift", .family = "clock.drift"};
-  term.parameters[0].value = skew;
-  term.parameters[1].value = growth;
-  Calibration calibration = nominal_calibration(default_rig());
-  calibration.lasers[1].terms.push_back(term);
-  Outcome outcome{
-      .model = SensorModel(calibration, built_in_terms()), .free = {}, .covariance = {}, .unobservable = {}};
-  const auto& names = outcome.model.names();
-  for (const std::string name : {"laser2.clock.drift.skew", "laser2.clock.drift.drift"}) {
-    outcome.free.push_back(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
-  }
-  outcome.covariance = Eigen::Vector2d(1e-12, 0.04e-12).asDiagonal();
-  return {.drift = drift, .outcome = outcome};
-}
-
-/// Whether it corrects the clock's line, whose skew is known to 6 ppm.
-bool is_correction(double skew, double growth, double skew_error = 6e-6) {
-  const Fit fit = fit_of(skew, growth);
-  std::vector<Hypothesis> hypotheses = {fit.drift};
-  mark_clock_lines(hypotheses, fit.outcome, {0, skew_error, 0}, kMiddle, kLeast);
-  return hypotheses.front().is_clock_line;
-}
-
-TEST(ClockLines, AreCorrectedByASkewWithinTheirErrors) {
-  EXPECT_TRUE(is_correction(17e-6, 0));
-  EXPECT_TRUE(is_correction(-17e-6, 0));
-  EXPECT_TRUE(is_correction(19e-6, -0.5e-6)) << "the mean skew counts: 16.5 ppm";
-  Fit vague = fit_of(24e-6, 0);
-  vague.outcome.covariance(0, 0) = 36e-12;
-  std::vector<Hypothesis> hypotheses = {vague.drift};
-  mark_clock_lines(hypotheses, vague.outcome, {0, 6e-6, 0}, kMiddle, kLeast);
-  EXPECT_TRUE(hypotheses.front().is_clock_line) << "24 ppm, by 8.5 ppm of both errors";
-}
-
-TEST(ClockLines, DoNotExplainALargerOrAChangingSkew) {
-  EXPECT_FALSE(is_correction(19e-6, 0));
-  EXPECT_TRUE(is_correction(5e-6, 0.88e-6)) << "by 4.4 standard errors, which no cause is selected for";
-  EXPECT_FALSE(is_correction(5e-6, 0.91e-6)) << "the skew changes";
-  EXPECT_FALSE(is_correction(5e-6, 0, 0)) << "an exact clock";
-}
-
-TEST(ClockLines, OfAnotherTermOrARejectedDriftAreNone) {
-  const Fit fit = fit_of(5e-6, 0);
-  std::vector<Hypothesis> hypotheses = {fit.drift, fit.drift};
-  hypotheses[0].accepted = false;
-  hypotheses[1].candidate.term.term = "mirror.period";
-  mark_clock_lines(hypotheses, fit.outcome, {6e-6, 6e-6, 6e-6}, kMiddle, kLeast);
-  EXPECT_FALSE(hypotheses[0].is_clock_line);
-  EXPECT_FALSE(hypotheses[1].is_clock_line);
-  EXPECT_FALSE(clock_lines(hypotheses, fit.outcome));
-}
-
-TEST(ClockLines, AreReportedWithTheirSkews) {
-  const Fit fit = fit_of(5e-6, 0);
-  std::vector<Hypothesis> hypotheses = {fit.drift};
-  mark_clock_lines(hypotheses, fit.outcome, {6e-6, 6e-6, 6e-6}, kMiddle, kLeast);
-  const auto found = clock_lines(hypotheses, fit.outcome);
-  ASSERT_TRUE(found);
-  ASSERT_EQ(found->parameters.size(), 1U);
-  EXPECT_EQ(found->parameters[0].name, "laser2.clock.drift.skew");
-  EXPECT_DOUBLE_EQ(found->parameters[0].value, 5e-6);
-  EXPECT_DOUBLE_EQ(found->parameters[0].std_error, 1e-6);
+/// η and the skew of the first laser, and the skew of the third, with these standard errors.
+Outcome outcome_of(const Lines& lines, double first, double third) {
+  Outcome outcome{.model = lines.model(), .free = {}, .covariance = {}, .unobservable = {}};
+  for (const char* name : {"laser1.eta", "laser1.clock.skew.skew", "laser3.clock.skew.skew"})
+    outcome.free.push_back(outcome.model.index(name));
+  outcome.covariance = Eigen::Vector3d(1e-12, first * first, third * third).asDiagonal();
+  return outcome;
 }
 
 TEST(ClockLines, HaveTheErrorsOfBothClocks) {
@@ -99,6 +47,67 @@ TEST(ClockLines, HaveTheErrorsOfBothClocks) {
   ASSERT_EQ(errors.size(), rig.lasers.size());
   EXPECT_DOUBLE_EQ(errors[0], 5e-6);
   EXPECT_DOUBLE_EQ(errors[1], 4e-6) << "a clock without a map is exact";
+}
+
+TEST(ClockLines, AreOfTheBaseModelUnlessTheyAreExact) {
+  Lines lines;
+  const SensorModel model = lines.model();
+  const std::size_t skew = model.index("laser1.clock.skew.skew");
+  EXPECT_EQ(std::ranges::count(model.names(), "laser2.clock.skew.skew"), 0);
+  EXPECT_EQ(model.values()[static_cast<Eigen::Index>(model.index("laser1.clock.skew.middle"))], kMiddle);
+  EXPECT_TRUE(is_of_base_model(model, skew));
+  EXPECT_DOUBLE_EQ(ranges_of(lines.prior, model, {skew})[0], 3e-6) << "and not a part of the bounds";
+  EXPECT_DOUBLE_EQ(prior_means(lines.prior, model, {skew})[0], 0);
+  Refinement fit{.outcome = outcome_of(lines, 1e-6, 1e-6)};
+  EXPECT_EQ(base_of(fit), fit.outcome.free);
+}
+
+TEST(ClockLines, StayWithOtherTermsAndAreNoCandidates) {
+  Lines lines;
+  lines.calibration.lasers[0].terms.push_back(
+      neutral_parameters(built_in_terms().get("mirror.cone")->info()));
+  const Calibration plain = with_terms(lines.calibration, {}, built_in_terms());
+  ASSERT_EQ(plain.lasers[0].terms.size(), 1U);
+  EXPECT_EQ(plain.lasers[0].terms[0].term, "clock.skew");
+  for (const Candidate& one : candidates(built_in_terms(), lines.calibration, {0, 10}))
+    EXPECT_NE(one.term.term, "clock.skew");
+}
+
+TEST(ClockLines, GiveTheScoreTestsTheirPrior) {
+  const Lines lines;
+  const SensorModel model = with_one(lines.model(), lines.model().index("laser3.clock.skew.skew"), 2e-6);
+  const std::vector<std::size_t> base = {model.index("laser3.eta"), model.index("laser3.clock.skew.skew")};
+  const CandidateJacobian jacobian(model, base, {}, built_in_terms());
+  quality::NormalEquations equations(2);
+  equations.beams = 110;
+  equations.degrees_of_freedom = 100;
+  equations.weight = equations.stiffness = 100;
+  equations.influence = 400;
+  const double factor = equations.covariance_factor();
+  jacobian.add_prior(equations, lines.prior);
+  const double information = factor / (16e-12);
+  EXPECT_DOUBLE_EQ(equations.matrix(1, 1), information);
+  EXPECT_DOUBLE_EQ(equations.vector[1], information * 2e-6);
+  EXPECT_DOUBLE_EQ(equations.chi2, information * 4e-12);
+  EXPECT_EQ(equations.matrix(0, 0), 0) << "an η of which nothing is known from elsewhere";
+}
+
+TEST(ClockLines, AreLeftOutOfTheCalibration) {
+  const Outcome outcome = without_clock_lines(outcome_of(Lines(), 1e-6, 2e-6), built_in_terms());
+  EXPECT_EQ(outcome.model.names(), SensorModel(nominal_calibration(default_rig()), built_in_terms()).names());
+  ASSERT_EQ(outcome.free.size(), 1U);
+  EXPECT_EQ(outcome.model.names()[outcome.free[0]], "laser1.eta");
+  EXPECT_EQ(outcome.covariance, Eigen::MatrixXd::Constant(1, 1, 1e-12));
+}
+
+TEST(ClockLines, AreReportedWhereSurfacesKnowThemBetter) {
+  const Lines lines;
+  const auto found = clock_lines(outcome_of(lines, 1.4e-6, 2.1e-6), lines.prior);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->parameters.size(), 1U);
+  EXPECT_EQ(found->parameters[0].name, "laser1.clock.skew.skew");
+  EXPECT_DOUBLE_EQ(found->parameters[0].std_error, 1.4e-6);
+  EXPECT_FALSE(clock_lines(outcome_of(lines, 1.6e-6, 2.1e-6), lines.prior));
 }
 
 }  // namespace

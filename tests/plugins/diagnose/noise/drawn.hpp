@@ -37,7 +37,8 @@ struct Drawn {
 inline std::vector<std::string> causes() {
   std::vector<std::string> names;
   for (const auto& name : built_in_terms().names()) {
-    if (built_in_terms().get(name)->info().covariate.empty()) names.push_back(name);
+    const TermInfo& info = built_in_terms().get(name)->info();
+    if (info.covariate.empty() && !info.is_nuisance) names.push_back(name);
   }
   return names;
 }
