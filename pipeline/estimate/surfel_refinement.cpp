@@ -213,7 +213,9 @@ Refinement refine_by_surfels(const SensorModel& start, const Sample& sample,
   // The start counts as an observation: a start that was far off would draw the result towards itself.
   for (int restart = 1; restart < kStarts; ++restart) {
     const Refinement& result = last.refinement;
-    const bool is_settled = result.converged && last.pull == Pull::kNone;
+    // A model that is only tested, and takes steps without end, is none to begin anew with.
+    const bool is_settled =
+        (result.converged || settings.detail == Detail::kModel) && last.pull == Pull::kNone;
     if (was_stopped(result) || is_settled) return compared();
     from = result.outcome.model;
     if (result.surfaces) known = result.surfaces;

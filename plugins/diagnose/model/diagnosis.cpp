@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "plugins/diagnose/model/acceptance.hpp"
@@ -32,8 +31,7 @@ class Diagnoser {
     report(0, "refining without any terms");
     const estimate::Refinement plain = fits_.refined(with_terms(start_, {}, terms_));
     fits_.limit_lags(plain.outcome.model);
-    Diagnosis result = search(plain, {}, report_);
-    search_without_rejected(result);
+    Diagnosis result = search(plain);
     report(0.9, "simulating the scanner");
     result.left_before = fits_.compared(result.before);
     result.left_after = result.hypotheses.empty() ? result.left_before : fits_.compared(result.after);
@@ -44,37 +42,18 @@ class Diagnoser {
 
  private:
   /// Extends the plain model, and accepts or rejects the extensions.
-  ///
-  /// @param excluded  names of candidates that the search leaves out
-  Diagnosis search(const estimate::Refinement& plain, const std::set<std::string>& excluded,
-                   const DiagnosisReporter& progress) const {
+  Diagnosis search(const estimate::Refinement& plain) const {
     Diagnosis result{.before = plain, .after = plain};
-    extend(result, excluded, fits_, terms_, settings_, progress);
+    extend(result, fits_, terms_, settings_, report_);
     if (result.hypotheses.empty()) {
       result.after = result.before;
     } else {
       // With all beams and full standard errors, which the search leaves out.
       result.after = fits_.refined(result.after.outcome.model.calibration());
-      if (progress) progress(0.8, "cross-validating on held-out turns");
+      report(0.8, "cross-validating on held-out turns");
       accept(result);
     }
     return result;
-  }
-
-  /// Repeats the search without the causes that were rejected, where the rest of the model leaves something:
-  /// they may have taken another one's place. What it finds counts if it explains all.
-  void search_without_rejected(Diagnosis& result) const {
-    std::set<std::string> rejected;
-    for (const Hypothesis& one : result.hypotheses) {
-      if (!one.accepted && one.candidate.is_cause()) rejected.insert(one.candidate.name);
-    }
-    if (rejected.empty() || fits_.explains_all(result.after)) return;
-    const DiagnosisReporter progress = [this](double fraction, const std::string& what) {
-      report(0.8 + 0.1 * fraction, "without the rejected causes, " + what);
-    };
-    Diagnosis other = search(result.before, rejected, progress);
-    const bool is_extended = std::ranges::any_of(other.hypotheses, &Hypothesis::accepted);
-    if (is_extended && fits_.explains_all(other.after)) result = std::move(other);
   }
 
   bool has_open_questions(const Diagnosis& result) const {

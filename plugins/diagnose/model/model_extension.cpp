@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,9 +36,9 @@ bool is_new(const Hypothesis& hypothesis) { return !hypothesis.candidate.in_mode
 /// The stepwise search, with its state.
 class ModelExtension {
  public:
-  ModelExtension(std::set<std::string> excluded, const ModelFits& fits, const TermRegistry& terms,
-                 const DiagnosisSettings& settings, const DiagnosisReporter& report)
-      : fits_(fits), terms_(terms), settings_(settings), report_(report), rejected_(std::move(excluded)) {}
+  ModelExtension(const ModelFits& fits, const TermRegistry& terms, const DiagnosisSettings& settings,
+                 const DiagnosisReporter& report)
+      : fits_(fits), terms_(terms), settings_(settings), report_(report) {}
 
   void run(Diagnosis& result) {
     search(result);
@@ -119,22 +121,40 @@ class ModelExtension {
     if (may_be_fine) left = fits_.compared(result.after);
     CandidateSearch search(observations, result.after, terms_, settings_, left);
     if (!is_close_) {
-      result.hypotheses = search.needs(rejected_);
+      select(result, [&] { return search.needs(rejected_); });
       if (names_of(result.hypotheses) != names_of(chosen_)) return search;
       if (!may_be_fine) left = fits_.compared(result.after);
       is_close_ = needs_refinement(result.hypotheses, left);
       if (!is_close_) {
         if (may_be_fine) return search;
         CandidateSearch finer(observations, result.after, terms_, settings_, left);
-        result.hypotheses = finer.needs(rejected_);
+        select(result, [&] { return finer.needs(rejected_); });
         // A deviation that no shape describes with these beams may be that of a small cause.
         is_close_ = result.hypotheses.empty() && settings_.refine_beams > settings_.beams;
         if (!is_close_) return finer;
       }
     }
     progress(0.4, "refining the search with more beams");
-    result.hypotheses = search.refine_search(rejected_);
+    select(result, [&] { return search.refine_search(rejected_); });
     return search;
+  }
+
+  /// Selects candidates, and rejects new ones by which the search would return to a model that was tested
+  /// before: it would go in circles, such as between two members of a family.
+  template <class Selection>
+  void select(Diagnosis& result, const Selection& selected) {
+    for (;;) {
+      result.hypotheses = selected();
+      const std::set<std::string> names = names_of(result.hypotheses);
+      const bool was_tested =
+          std::ranges::any_of(tested_, [&](const Tested& one) { return names_of(one.chosen) == names; });
+      if (!was_tested || names == names_of(chosen_)) return;
+      const std::size_t before = rejected_.size();
+      for (const Hypothesis& one : result.hypotheses) {
+        if (is_new(one)) rejected_.insert(one.candidate.name);
+      }
+      if (rejected_.size() == before) return;
+    }
   }
 
   /// Rejects candidates of the model that the next one leaves out: they would be selected again in every
@@ -167,7 +187,7 @@ class ModelExtension {
   const DiagnosisReporter& report_;
   int round_ = 0;
   std::vector<Candidate> chosen_;   ///< candidates of the current model
-  std::set<std::string> rejected_;  ///< candidates that an earlier model had and did not need, or excluded
+  std::set<std::string> rejected_;  ///< candidates that an earlier model had and did not need
   std::set<std::string> replaced_;  ///< candidates in whose place another came once
   std::vector<Tested> tested_;      ///< in the order of the search
   bool is_close_ = false;           ///< whether the refined search (more beams, causes only) runs
@@ -175,9 +195,9 @@ class ModelExtension {
 
 }  // namespace
 
-void extend(Diagnosis& result, const std::set<std::string>& excluded, const ModelFits& fits,
-            const TermRegistry& terms, const DiagnosisSettings& settings, const DiagnosisReporter& report) {
-  ModelExtension(excluded, fits, terms, settings, report).run(result);
+void extend(Diagnosis& result, const ModelFits& fits, const TermRegistry& terms,
+            const DiagnosisSettings& settings, const DiagnosisReporter& report) {
+  ModelExtension(fits, terms, settings, report).run(result);
 }
 
 }  // namespace crisp::diagnose

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <set>
-#include <string>
-
 #include "plugins/diagnose/model/diagnosis.hpp"
 #include "plugins/diagnose/model/model_fits.hpp"
 
@@ -12,9 +9,7 @@ namespace crisp::diagnose {
 /// Extends the model of `result.after` by the candidates that the recording needs, round by round, until the
 /// selection adds nothing: sets its hypotheses, forms, limits and the extended model, which lacks full
 /// standard errors.
-///
-/// @param excluded  names of candidates that the search leaves out
-void extend(Diagnosis& result, const std::set<std::string>& excluded, const ModelFits& fits,
-            const TermRegistry& terms, const DiagnosisSettings& settings, const DiagnosisReporter& report);
+void extend(Diagnosis& result, const ModelFits& fits, const TermRegistry& terms,
+            const DiagnosisSettings& settings, const DiagnosisReporter& report);
 
 }  // namespace crisp::diagnose
