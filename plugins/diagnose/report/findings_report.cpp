@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -128,7 +129,42 @@ const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothe
   });
 }
 
-/// Adds another member of the same family, or what is its level, to a finding.
+/// Whether the family of another hypothesis, of the same owner, explains no less than this one.
+bool is_explained_by_family_of(const Hypothesis& other, const Hypothesis& one) {
+  return one.accepted && other.accepted &&
+         std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
+           return competitor.behind <= 0 && competitor.term == other.candidate.family &&
+                  competitor.owner == other.candidate.owner;
+         });
+}
+
+/// For each hypothesis of a cause, the one as part of which it is reported. What the family of a more
+/// significant cause explains as well, beyond the members that the model has of it, is no further cause.
+std::map<const Hypothesis*, const Hypothesis*> reported_as(const std::vector<Hypothesis>& all) {
+  std::map<const Hypothesis*, const Hypothesis*> as;
+  std::vector<const Hypothesis*> heads;
+  for (const Hypothesis& one : all) {
+    if (!is_reported(one)) continue;
+    as[&one] = &reported_with(one, all);
+    if (as[&one] == &one) heads.push_back(&one);
+  }
+  std::ranges::stable_sort(heads, std::greater{}, [](const Hypothesis* one) { return one->test.bic; });
+  std::vector<const Hypothesis*> kept;
+  for (const Hypothesis* head : heads) {
+    const auto whole = std::ranges::find_if(
+        kept, [&](const Hypothesis* other) { return is_explained_by_family_of(*other, *head); });
+    if (whole == kept.end()) {
+      kept.push_back(head);
+      continue;
+    }
+    for (auto& [one, with] : as) {
+      if (with == head) with = *whole;
+    }
+  }
+  return as;
+}
+
+/// Adds another member of the same family, what is its level, or what it explains as well, to a finding.
 ///
 /// @param is_member  whether its parameters are the family's
 void merge(Finding& finding, const Finding& other, bool is_member) {
@@ -143,21 +179,19 @@ void merge(Finding& finding, const Finding& other, bool is_member) {
 std::vector<Finding> causes_of(const Diagnosis& diagnosis, const Calibration& calibration,
                                const TermRegistry& terms, double odds, double noise) {
   const std::vector<Hypothesis>& all = diagnosis.hypotheses;
+  const auto as = reported_as(all);
   std::vector<Finding> findings;
   std::map<const Hypothesis*, std::size_t> place;
   for (const Hypothesis& hypothesis : all) {
-    if (!is_reported(hypothesis) || &reported_with(hypothesis, all) != &hypothesis) continue;
+    if (!is_reported(hypothesis) || as.at(&hypothesis) != &hypothesis) continue;
     place.emplace(&hypothesis, findings.size());
     findings.push_back(finding_of(hypothesis, calibration, diagnosis, terms, odds, noise));
   }
-  for (const Hypothesis& hypothesis : all) {
-    if (!is_reported(hypothesis)) continue;
-    const Hypothesis& with = reported_with(hypothesis, all);
-    if (&with == &hypothesis) continue;
+  for (const auto& [one, with] : as) {
+    if (with == one) continue;
     const bool is_member =
-        hypothesis.candidate.is_of_family(with.candidate) || hypothesis.candidate.is_level_of(with.candidate);
-    merge(findings[place.at(&with)], finding_of(hypothesis, calibration, diagnosis, terms, odds, noise),
-          is_member);
+        one->candidate.is_of_family(with->candidate) || one->candidate.is_level_of(with->candidate);
+    merge(findings[place.at(with)], finding_of(*one, calibration, diagnosis, terms, odds, noise), is_member);
   }
   return findings;
 }

@@ -17,6 +17,7 @@ using namespace crisp::diagnose;
 using namespace crisp::estimate;
 using namespace crisp::simulate;
 using testing::HasSubstr;
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -138,6 +139,34 @@ TEST(FindingsReport, HasNoCauseThatTheLevelOfAnotherExplains) {
   EXPECT_THAT(reported(diagnosis).findings, SizeIs(2)) << "no constant does that";
   diagnosis.hypotheses[0].competitors[0] = {.behind = -20, .term = "range.offset", .owner = 1};
   EXPECT_THAT(reported(diagnosis).findings, SizeIs(2)) << "of another laser";
+}
+
+TEST(FindingsReport, HasNoCauseThatTheFamilyOfAnotherExplains) {
+  Diagnosis diagnosis = without_candidates(with_a_third_harmonic());
+  const auto of_laser3 = [](const std::string& term, double bic, const std::string& rival, double behind) {
+    return Hypothesis{
+        .candidate = {.owner = 2, .term = {.term = term}, .name = "laser3." + term, .family = term},
+        .test = {.bic = bic},
+        .competitors = {{.name = "laser3." + rival, .behind = behind, .term = rival, .owner = 2}},
+        .gains = {}};
+  };
+  const auto causes = [&] {
+    std::vector<std::string> names;
+    for (const Finding& finding : reported(diagnosis).findings) names.push_back(finding.cause);
+    return names;
+  };
+  diagnosis.hypotheses = {of_laser3("mirror.eccentricity", 200, "range.incidence", -5),
+                          of_laser3("range.incidence", 700, "range.offset", 60)};
+  EXPECT_THAT(causes(), ElementsAre("range.incidence"));
+  std::ranges::reverse(diagnosis.hypotheses);
+  EXPECT_THAT(causes(), ElementsAre("range.incidence")) << "in any order";
+  diagnosis.hypotheses[0].competitors[0] = {.behind = -5, .term = "mirror.eccentricity", .owner = 2};
+  EXPECT_THAT(causes(), ElementsAre("range.incidence"))
+      << "the more significant one, where each explains both";
+  diagnosis.hypotheses[1].competitors[0].behind = 5;
+  EXPECT_THAT(causes(), SizeIs(2)) << "it explains more by itself";
+  diagnosis.hypotheses[1].competitors[0] = {.behind = -5, .term = "range.incidence", .owner = 1};
+  EXPECT_THAT(causes(), SizeIs(2)) << "of another laser";
 }
 
 TEST(FindingsReport, LeavesOutInsignificantAndSmallDeviations) {
