@@ -34,7 +34,7 @@ void add_clock_lines(Calibration& calibration, estimate::ParameterPrior& prior,
   for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
     LaserCalibration& own = calibration.lasers[laser];
     std::erase_if(own.terms, [](const TermParameters& one) { return one.term == kTerm; });
-    if (!(errors[laser] > 0)) continue;
+    if (!(errors[laser] > 0) || !std::isfinite(errors[laser])) continue;
     own.terms.push_back(term);
     prior.nominal[parameter_of(own.name)] = {.value = 0, .std_error = errors[laser]};
   }
