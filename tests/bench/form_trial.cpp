@@ -65,22 +65,29 @@ class FormTrial {
     return is_listed ? "listed as unobservable" : "missed";
   }
 
-  void judge(const test::InjectedEffect& effect, const Findings& findings) {
-    Names right, in_class, wrong, all;
-    for (const Finding& finding : findings.findings) {
+  /// All findings, those without a name as well, in words.
+  static Names in_words(const Findings& findings) {
+    Names all;
+    for (const Finding& finding : findings.findings)
       all.push_back(fmt::format(
           "{}.{}{}{}", finding.scope, finding.cause, finding.accepted ? "" : " rejected",
           finding.confounded_with.empty() ? ""
                                           : fmt::format(" [{}]", fmt::join(finding.confounded_with, " "))));
+    for (const UnnamedFinding& unnamed : findings.unnamed)
+      all.push_back(fmt::format("{}: {} over {} {:.1f} mm", unnamed.scope, unnamed.quantity,
+                                unnamed.covariate, 1e3 * unnamed.amplitude));
+    return all;
+  }
+
+  void judge(const test::InjectedEffect& effect, const Findings& findings) {
+    Names right, in_class, wrong;
+    for (const Finding& finding : findings.findings) {
       if (!finding.accepted) continue;
       const bool holds = std::ranges::any_of(finding.confounded_with, [&](const std::string& name) {
         return name == effect.cause || name.ends_with("." + effect.cause);
       });
       (finding.cause == effect.cause ? right : holds ? in_class : wrong).push_back(finding.cause);
     }
-    for (const UnnamedFinding& unnamed : findings.unnamed)
-      all.push_back(fmt::format("{}: {} over {} {:.1f} mm", unnamed.scope, unnamed.quantity,
-                                unnamed.covariate, 1e3 * unnamed.amplitude));
     const bool is_plain = effect.cause == "none" || effect.cause == "shape";
     const std::string false_name = wrong.empty() ? "" : is_plain ? "false name" : " and a false name";
     if (is_plain)
@@ -91,7 +98,7 @@ class FormTrial {
       count(effect.cause, (right.empty() ? "class" : "right") + false_name);
     else
       count(effect.cause, !wrong.empty() ? "wrong name" : unidentified(effect.cause, findings));
-    fmt::print(": {}", fmt::join(all, ", "));
+    fmt::print(": {}", fmt::join(in_words(findings), ", "));
   }
 
   Names fixed_;

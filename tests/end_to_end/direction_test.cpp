@@ -21,7 +21,7 @@ class Direction : public testing::Test {
     std::string yaml = test::bytes_of(source_dir() + "/configs/rig.yaml");
     const std::string key = "direction: counter_clockwise";
     yaml.replace(yaml.find(key), key.size(), "direction: " + direction);
-    const auto file = fixture_ / ("rig_" + direction + ".yaml");
+    auto file = fixture_ / ("rig_" + direction + ".yaml");
     test::put_bytes(file, yaml);
     return file;
   }

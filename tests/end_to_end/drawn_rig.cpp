@@ -77,7 +77,7 @@ DrawnRig::DrawnRig(const std::filesystem::path& folder, std::uint64_t seed,
                    const std::vector<std::string>& fixed)
     : folder_(folder) {
   std::filesystem::create_directories(folder);
-  std::string command = fmt::format("\"{}\" {} \"{}\"", CRISP_INDEPENDENT_SCANNER, seed, folder.string());
+  std::string command = fmt::format(R"("{}" {} "{}")", CRISP_INDEPENDENT_SCANNER, seed, folder.string());
   for (const auto& draw : fixed) command += " \"" + draw + "\"";
   if (std::system((command + " > /dev/null").c_str()) != 0) throw std::runtime_error(command + " failed");
   const YAML::Node truth = YAML::LoadFile(folder / "truth.yaml");

@@ -60,7 +60,7 @@ class DrawnRig {
     double eta = 0;                         ///< [s] as crisp counts it, with the delays that really occurred
     int scans = 0;
   };
-  std::vector<FoundParameter> compare_turned(const Calibration& found, double turn) const;
+  std::vector<FoundParameter> compare_turned(const Calibration& calibration, double turn) const;
 
   std::filesystem::path folder_;
   std::string fault_;

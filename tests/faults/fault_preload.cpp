@@ -58,9 +58,9 @@ namespace {
 enum class Names : std::uint8_t { descriptor, path, folder_and_path, nothing };
 
 struct Call {
-  int number;
-  const char* name;
-  Names names;
+  int number = 0;
+  const char* name = "";
+  Names names = Names::nothing;
   int at = 0;  ///< argument that names the file; of a renaming the new name
 };
 
@@ -117,6 +117,7 @@ bool is_stack(const Arguments& arguments) { return (arguments[3] & MAP_STACK) !=
 std::string_view path_of(const Call& call, const Arguments& arguments, Path& path) {
   if (call.names == Names::descriptor) return {path.data(), path_of_descriptor(arguments[call.at], path)};
   const bool has_folder = call.names == Names::folder_and_path;
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the address in a register
   const auto* name = reinterpret_cast<const char*>(arguments[call.at + (has_folder ? 1 : 0)]);
   if (name == nullptr) return {};
   if (name[0] == '/' || !has_folder || static_cast<int>(arguments[call.at]) == AT_FDCWD) return name;
@@ -139,6 +140,7 @@ void log_call(long number, const Call& call, std::string_view path) {
 long pass_half(long number, Arguments arguments) {
   if (number == SYS_write || number == SYS_pwrite64) arguments[2] = (arguments[2] + 1) / 2;
   if (number != SYS_writev) return pass(number, arguments);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the address in a register
   const auto* parts = reinterpret_cast<const iovec*>(arguments[1]);
   long at = 0;
   while (at + 1 < arguments[2] && parts[at].iov_len == 0) ++at;
@@ -188,9 +190,11 @@ long perform(const Call& call, const Arguments& arguments) {
 void* allocate(std::size_t size, std::size_t alignment) {
   const bool fails =
       size >= kLarge && calls != nullptr && count(kNew, "memory") && inject(kNew, {}) == -ENOMEM;
+  // NOLINTBEGIN(cppcoreguidelines-no-malloc): `operator new` itself
   void* memory = fails                                    ? nullptr
                  : alignment <= alignof(std::max_align_t) ? std::malloc(size)
                                                           : std::aligned_alloc(alignment, size);
+  // NOLINTEND(cppcoreguidelines-no-malloc)
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
@@ -230,8 +234,10 @@ __attribute__((constructor)) void begin() {
 
 }  // namespace
 
+// NOLINTBEGIN(misc-new-delete-overloads): the standard library's `operator delete` frees what comes of malloc
 void* operator new(std::size_t size) { return allocate(size, 1); }
 void* operator new[](std::size_t size) { return allocate(size, 1); }
+// NOLINTEND(misc-new-delete-overloads)
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return allocate(size, static_cast<std::size_t>(alignment));
 }

@@ -15,7 +15,7 @@ namespace {
 /// The name that a person knows a file by: of a part that of the file that it becomes, of a lock its
 /// folder's.
 std::string known_name(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
+  std::string name = file.filename().string();
   if (name.starts_with(".crisp-lock") || name.starts_with('#')) return file.parent_path().filename().string();
   if (!is_hidden(name) || !name.ends_with(".part")) return name;
   const std::string stem = name.substr(1, name.size() - 6);
@@ -136,7 +136,7 @@ class Judge {
         const auto of = stage_.earlier().find(record);
         const auto now = files.find(record);
         if (of != stage_.earlier().end() && now != files.end() && of->second == now->second)
-          violate(record + " of the earlier run next to " + name + " of this one");
+          violate(fmt::format("{} of the earlier run next to {} of this one", record, name));
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/source_dir.hpp"
 
@@ -31,7 +32,7 @@ fs::path fast_folder() {
 
 }  // namespace
 
-Stage::Stage(const Scenario& scenario) : scenario_(scenario), folder_(fast_folder()) {
+Stage::Stage(Scenario scenario) : scenario_(std::move(scenario)), folder_(fast_folder()) {
   fs::create_directory(input());
   if (scenario_.command == Command::record)
     scanner_ = std::make_unique<EmulatedScanner>(input() / "rig.yaml");

@@ -20,7 +20,7 @@ class Stage {
  public:
   /// Makes inputs, the earlier run and the undisturbed one.
   /// @throws std::runtime_error  if one of them fails
-  explicit Stage(const Scenario& scenario);
+  explicit Stage(Scenario scenario);
 
   /// The calls of an undisturbed run on files below the folders.
   const std::vector<FileCall>& calls() const { return calls_; }

@@ -34,7 +34,7 @@ struct Traffic {
 };
 
 /// Sends scans of a laser (its index) as CoLa telegrams over TCP, with the hub's acknowledgements.
-Traffic send_scans(const Setup& setup, std::size_t laser, const std::vector<Scan>& scans,
+Traffic send_scans(const Setup& setup, std::size_t index, const std::vector<Scan>& scans,
                    const Effect& effect, std::mt19937_64 random);
 
 /// Reads the encoder throughout the capture, and sends the plate's sentences over UDP.

@@ -45,7 +45,7 @@ Pose plate_pose(const Setup& setup);
 
 /// All scans of a laser (its index) that begin and end within the capture, each beam fired at its own
 /// instant.
-std::vector<Scan> simulate_scans(const Setup& setup, std::size_t laser, const World& world,
+std::vector<Scan> simulate_scans(const Setup& setup, std::size_t index, const World& world,
                                  const PlateMotion& motion, const Effect& effect, std::mt19937_64 random);
 
 /// RMS by which the effect changes what beams measure, against a plain scanner that reports the same times

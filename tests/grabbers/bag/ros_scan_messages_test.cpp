@@ -101,7 +101,7 @@ class AngleMessages : public testing::Test {
         connection("sensor_msgs/JointState", test::kJointStateDefinition, RosEncoding::ros1), plate_);
     return decoder->decode(test::joints_bytes(kStamp, names, positions, false));
   }
-  double number_of(const std::string& type, test::RosBytes bytes) {
+  double number_of(const std::string& type, const test::RosBytes& bytes) {
     return AngleDecoder::of(connection(type, "", RosEncoding::cdr), plate_)->decode(bytes.bytes())->angle;
   }
   RigPlate plate_{.counts_per_revolution = 3600};

@@ -159,8 +159,8 @@ TEST(CaptureReader, GivesItemsInOrderWhereManySegmentsAreLost) {
   auto segments = segments_of(frames, 1);
   std::mt19937_64 random(1);
   std::erase_if(segments, [&](std::size_t) { return random() % 2 == 0; });
-  for (auto lost = segments.rbegin(); lost != segments.rend(); ++lost)
-    frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(*lost));
+  std::ranges::reverse(segments);
+  for (const std::size_t lost : segments) frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(lost));
   const auto reading = read_capture(pcap_file(frames));
   EXPECT_EQ(reading.statistics.notes.of("items out of order, since the hub's clock stepped back"), 0U);
   EXPECT_EQ(reading.device("laser1").notes.of("TCP segments out of order"), 0U);

@@ -27,9 +27,9 @@ Scan scan_of(std::uint16_t laser, std::uint16_t k, std::vector<ScanEncoder> enco
 std::vector<std::uint32_t> counts_of(const std::vector<std::uint32_t>& positions, EncoderWidths widths) {
   WiredEncoder encoder(rig_with_encoder_of(1));
   std::vector<std::uint32_t> counts;
-  for (std::uint16_t k = 0; k < positions.size(); ++k) {
-    counts.push_back(encoder.read(scan_of(1, k, {{.position = positions[k]}}), widths)->count);
-  }
+  std::uint16_t k = 0;
+  for (const std::uint32_t position : positions)
+    counts.push_back(encoder.read(scan_of(1, k++, {{.position = position}}), widths)->count);
   return counts;
 }
 

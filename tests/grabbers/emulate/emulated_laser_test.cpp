@@ -27,6 +27,7 @@ class Clients {
       : laser_(context_, {.ip = "127.0.0.1", .port = 0}, FaultDice({}, 0), EmulatedClock(), longest_idle) {
     laser_.start();
   }
+  // NOLINTNEXTLINE(bugprone-exception-escape): what it throws ends the test program
   ~Clients() {
     laser_.stop();
     context_.poll();

@@ -76,7 +76,8 @@ TEST_F(CaptureRecorderTest, GoesOnBehindADamagedRecordAndShortensNothing) {
   const std::string whole = test::bytes_of(folder_ / "sound.pcap");
   for (const int bit : {0, 5, 13, 20, 31}) {  // of the number of bytes that the record holds
     std::string damaged = whole;
-    damaged[middle_record(whole) + 8 + bit / 8] ^= static_cast<char>(1 << bit % 8);
+    char& byte = damaged[middle_record(whole) + 8 + bit / 8];
+    byte = static_cast<char>(byte ^ (1 << bit % 8));
     test::put_bytes(folder_ / "hub.pcap", damaged);
     CaptureRecorder recorder(folder_ / "hub.pcap", default_rig(), {});
     record_all(recorder, second);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -89,8 +90,8 @@ TEST(Configs, SimulateTheDevicesByTheirCommands) {
   for (const auto& entry : fs::directory_iterator(source_dir() + "/configs/devices")) {
     for (auto command : commands_of(entry.path())) {
       command = std::regex_replace(command, std::regex("^crisp|-o out"), "");
-      command = "cd " + source_dir() + " && " CRISP_PROGRAM + command + " -o " + folder.string() +
-                " --set grabber.simulate.duration=0.5s >/dev/null";
+      command = fmt::format("cd {} && {}{} -o {} --set grabber.simulate.duration=0.5s >/dev/null",
+                            source_dir(), CRISP_PROGRAM, command, folder.string());
       EXPECT_EQ(std::system(command.c_str()), 0) << entry.path() << ": " << command;
       EXPECT_GT(fs::file_size(folder / "hub.pcap"), 10000U) << entry.path();
       fs::remove_all(folder);

@@ -104,7 +104,7 @@ TEST(PluginLoader, ReportsWhyAFileIsNoPlugin) {
 
 /// A copy of the toy plugin, or of its first bytes, in a folder of its own.
 fs::path copy_of_toy(const std::string& name, std::uintmax_t bytes = fs::file_size(TOY_PLUGIN)) {
-  const fs::path copy = fs::path(testing::TempDir()) / name;
+  fs::path copy = fs::path(testing::TempDir()) / name;
   fs::copy_file(TOY_PLUGIN, copy, fs::copy_options::overwrite_existing);
   fs::resize_file(copy, bytes);
   return copy;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as people run it, with toy stages from a plugin.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -314,7 +315,7 @@ TEST_F(ProgramTest, IsInterruptedWhileItReadsAPipeIntoWhichNobodyWrites) {
       "grabber.table, with: {file: pipe, time_column: 1, angle_column: 2, range_column: 3, laser_column: 4, angle_step: 1deg}"};
   for (const auto& grabber : grabbers) {
     write_file(folder_ / "pipe.yaml",
-               "crisp: 1\npipeline:\n  - {stage: " + grabber + "}\n  - {stage: " + grabber + "}\n");
+               fmt::format("crisp: 1\npipeline:\n  - {{stage: {0}}}\n  - {{stage: {0}}}\n", grabber));
     const pid_t child = start({"run", path("pipe.yaml"), "-o", path("out"), "--threads", "2"});
     wait_for_handler(child, SIGTERM);
     kill(child, SIGTERM);

@@ -19,7 +19,8 @@ using namespace crisp::simulate;
 Measurements alternating(std::size_t n) {
   Measurements beams;
   for (std::size_t i = 0; i < n; ++i) {
-    beams.time.push_back(1e-3 * static_cast<double>(i / 2));
+    const auto pair = i / 2;
+    beams.time.push_back(1e-3 * static_cast<double>(pair));
     beams.laser.push_back(static_cast<std::uint16_t>(i % 2));
     beams.range.push_back(1);
     beams.mirror_angle.push_back(0);

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <crisp/error.hpp>
 
@@ -70,7 +71,7 @@ fs::path only_entry_of(const fs::path& folder) {
 fs::path put_lock_of_another_machine(const fs::path& folder, milliseconds age) {
   const LockOwner owner{
       {"node7", "another boot", 4711, 99}, "2026-03-01T09:14:07Z", "crisp record -o out", true};
-  const fs::path file = folder / ".crisp-lock.another";
+  fs::path file = folder / ".crisp-lock.another";
   test::put_bytes(file, to_json_text(owner));
   fs::last_write_time(file, fs::file_time_type::clock::now() - age);
   return file;
@@ -197,7 +198,7 @@ TEST(FolderLock, NamesAFolderThatCannotBeWritten) {
 /// Processes that all try to take one folder's lock at once. The winners keep it until all have tried.
 class Race {
  public:
-  explicit Race(const fs::path& folder) : folder_(folder) {
+  explicit Race(fs::path folder) : folder_(std::move(folder)) {
     for (auto* ends : {&start_, &result_, &end_}) {
       if (pipe(ends->data()) != 0) throw std::runtime_error("no pipe");
     }

@@ -81,7 +81,8 @@ TEST(Harmonics, AreCosinesAndSinesOfTheMultiples) {
     for (std::size_t k = 0; k < 12; ++k) {
       std::vector<double> one(12, 0);
       one[k] = 1;
-      const double turned = static_cast<double>(1 + k / 2) * x;
+      const auto order = 1 + k / 2;
+      const double turned = static_cast<double>(order) * x;
       EXPECT_NEAR(at(shape, x, one), k % 2 == 0 ? std::cos(turned) : std::sin(turned), 1e-13);
     }
   }

@@ -174,7 +174,7 @@ TEST(PcdTable, PointsBeyondThoseOfTheHeaderAreCounted) {
 
 TEST(PcdTable, WhatIsNoPcdDoesNothingToATerminal) {
   const auto said_of = [](const std::string& bytes) {
-    const std::string text = complaint(bytes);
+    std::string text = complaint(bytes);
     for (const char c : text) EXPECT_FALSE(static_cast<unsigned char>(c) < 0x20 || c == 0x7f) << text;
     return text;
   };
@@ -182,7 +182,7 @@ TEST(PcdTable, WhatIsNoPcdDoesNothingToATerminal) {
               HasSubstr("x.pcd:2:3: error: there is a control character (0x1b);"));
   EXPECT_THAT(said_of(std::string("\x7f"
                                   "ELF\0\0\n",
-                                  8)),
+                                  7)),
               HasSubstr("x.pcd:1:1: error: there is a control"));
   EXPECT_THAT(said_of("\x8b\xe9\n"), HasSubstr("'\\x8b\\xe9' is no key of PCD;"));
   EXPECT_THAT(said_of(ascii_file("FIELDS x\nSIZE 4\nWIDTH 1", std::string("\0\x1b[2J", 5))),

@@ -66,7 +66,7 @@ TEST(Plot, PutsHigherValuesHigherUpAndBarsAroundThem) {
 /// Where the frame of a picture of one plot begins, and where its text of that name stands [pixels from
 /// above].
 double top_of_frame(const std::string& svg) {
-  return numbers_between(svg, "<rect x=\"70\" y=\"", "\"").at(0);
+  return numbers_between(svg, R"(<rect x="70" y=")", "\"").at(0);
 }
 double height_of_name(const std::string& svg, const std::string& name) {
   const auto begin = svg.rfind("<text", svg.find(">" + name + "<"));

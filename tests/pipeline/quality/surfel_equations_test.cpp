@@ -137,14 +137,15 @@ TEST(SurfelEquations, LeaveOutNothingWhereManyParametersAreOfSingleLasers) {
     derivatives_of(scan)(surfel, beams, range_change, own);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const std::size_t parameter = k % kAll;
-      rows[k] = static_cast<double>(1 + parameter / kParameters) *
-                own[k / kAll * kParameters + parameter % kParameters];
+      const std::size_t copy = parameter / kParameters;
+      rows[k] = static_cast<double>(1 + copy) * own[k / kAll * kParameters + parameter % kParameters];
     }
   };
   const auto many = normal_equations(surfels, scan.beams(), kAll, copied, {}, divisions);
   Eigen::MatrixXd copies = Eigen::MatrixXd::Zero(kAll, kParameters);
   for (Eigen::Index k = 0; k < copies.rows(); ++k) {
-    copies(k, k % Eigen::Index{kParameters}) = static_cast<double>(1 + k / Eigen::Index{kParameters});
+    const Eigen::Index copy = k / Eigen::Index{kParameters};
+    copies(k, k % Eigen::Index{kParameters}) = static_cast<double>(1 + copy);
   }
   const auto is_near = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return (a - b).norm() < 1e-10 * b.norm();

@@ -47,7 +47,7 @@ TEST(Bootstrap, OfBlocksSeesWhatNeighboursShare) {
     return bootstrap(kValues, block, 3, 500, [&](const auto& drawn) { return mean_of(values, drawn); })
         .std_error;
   };
-  const double truth = 1 / std::sqrt(static_cast<double>(kValues / kShared));
+  const double truth = 1 / std::sqrt(double{kValues} / double{kShared});
   EXPECT_NEAR(error(10 * kShared), truth, 0.25 * truth);
   EXPECT_LT(error(1), 0.35 * truth) << "as if all were independent";
 }

@@ -15,12 +15,12 @@ using testing::HasSubstr;
 /// A beam of each laser at each of these mirror angles [rad].
 Measurements beams_at(const std::vector<std::vector<float>>& angles) {
   Measurements beams;
-  for (std::uint16_t laser = 0; laser < angles.size(); ++laser) {
+  for (std::size_t laser = 0; laser < angles.size(); ++laser) {
     for (const float angle : angles[laser]) {
       beams.range.push_back(3);
       beams.mirror_angle.push_back(angle);
       beams.time.push_back(0.02 * static_cast<double>(beams.range.size()));
-      beams.laser.push_back(laser);
+      beams.laser.push_back(static_cast<std::uint16_t>(laser));
       beams.remission.push_back(0);
       beams.beam.push_back(0);
     }

@@ -62,7 +62,8 @@ TEST(LocalPlanes, AreNoneWherePointsFillASpace) {
   for (int i = 0; i < 1000; ++i) {
     points.x.push_back(0.03 * (i % 10));
     points.y.push_back(0.03 * (i / 10 % 10));
-    points.z.push_back(0.03 * (i / 100));
+    const int layer = i / 100;
+    points.z.push_back(0.03 * layer);
   }
   const LocalPlanes planes = local_planes(points.view(), spatial_order(points.view(), kCell));
   EXPECT_TRUE(planes.planes.empty());

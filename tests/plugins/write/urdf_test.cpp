@@ -18,7 +18,7 @@ using namespace crisp::write;
 /// The transform of the first <origin> behind a laser's joint: Rz(yaw) Ry(pitch) Rx(roll), then xyz.
 Eigen::Isometry3d origin_of(const std::string& urdf, const std::string& laser) {
   const std::regex origin("name=\"" + laser +
-                          "_joint\"[^]*?<origin xyz=\"(\\S+) (\\S+) (\\S+)\" rpy=\"(\\S+) (\\S+) (\\S+)\"");
+                          R"re(_joint"[^]*?<origin xyz="(\S+) (\S+) (\S+)" rpy="(\S+) (\S+) (\S+)")re");
   std::smatch match;
   if (!std::regex_search(urdf, match, origin)) {
     ADD_FAILURE() << urdf;

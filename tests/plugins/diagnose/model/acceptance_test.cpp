@@ -11,7 +11,7 @@ namespace {
 using namespace crisp::diagnose;
 using namespace crisp::estimate;
 
-Refinement fitted(const Calibration& start) {
+Refinement fit_of(const Calibration& start) {
   Refinement fit{
       .outcome = {
           .model = SensorModel(start, built_in_terms()), .free = {}, .covariance = {}, .unobservable = {}}};
@@ -32,8 +32,8 @@ std::size_t terms_of(const Calibration& calibration) {
 
 /// Two lasers with offsets of a millimetre, which hardly shows.
 Diagnosis two_small_offsets() {
-  Diagnosis diagnosis{.before = fitted(nominal_calibration(default_rig())),
-                      .after = fitted(nominal_calibration(default_rig()))};
+  Diagnosis diagnosis{.before = fit_of(nominal_calibration(default_rig())),
+                      .after = fit_of(nominal_calibration(default_rig()))};
   Calibration extended = nominal_calibration(default_rig());
   for (const std::size_t laser : {0, 1}) {
     Hypothesis one;
@@ -46,7 +46,7 @@ Diagnosis two_small_offsets() {
     extended.lasers[laser].terms.push_back(one.candidate.term);
     diagnosis.hypotheses.push_back(one);
   }
-  diagnosis.after = fitted(extended);
+  diagnosis.after = fit_of(extended);
   return diagnosis;
 }
 
@@ -59,7 +59,7 @@ Diagnosis judged(double p_value_with) {
       score.pieces.push_back({.weight = 1, .likelihood = static_cast<double>(terms_of(calibration))});
     return score;
   };
-  const AcceptanceFits fits{.held_out = score, .refit = fitted, .compare = [&](const Refinement& fit) {
+  const AcceptanceFits fits{.held_out = score, .refit = fit_of, .compare = [&](const Refinement& fit) {
                               const bool has_both = terms_of(fit.outcome.model.calibration()) == 2;
                               return ProfileComparison{.p_value = has_both ? p_value_with : 1e-40};
                             }};

@@ -15,9 +15,9 @@ namespace {
 
 using namespace crisp::diagnose;
 
-constexpr double kSigma = 0.01;         // [m] noise of a residual
-constexpr std::uint32_t kBeams = 6000;  // of each laser
-constexpr std::size_t kLasers = 3;
+constexpr double kResidualSigma = 0.01;  // [m] noise of a residual
+constexpr std::uint32_t kBeamsPerLaser = 6000;
+constexpr std::size_t kLaserCount = 3;
 constexpr double kTests = 30;
 
 struct Beam {
@@ -33,11 +33,11 @@ std::vector<Profile> profiles_with(const std::function<double(const Beam&)>& dev
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<Beam> beams;
   WeightedResiduals residuals;
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
-    for (std::uint32_t k = 0; k < kBeams; ++k) {
+  for (std::size_t laser = 0; laser < kLaserCount; ++laser) {
+    for (std::uint32_t k = 0; k < kBeamsPerLaser; ++k) {
       const double mirror = uniform(random);
       beams.push_back({mirror, uniform(random), mirror + 0.25 * normal(random), laser});
-      residuals.value.push_back(deviation(beams.back()) + kSigma * normal(random));
+      residuals.value.push_back(deviation(beams.back()) + kResidualSigma * normal(random));
       residuals.weight.push_back(1);
     }
   }
@@ -55,15 +55,16 @@ std::vector<Profile> profiles_with(const std::function<double(const Beam&)>& dev
     QuantileBins& layout = layouts.back();
     layout.profile.covariate = covariate;
     layout.profile.laser = laser;
-    layout.profile.share = 1.0 / kLasers;
+    layout.profile.share = 1.0 / kLaserCount;
     const auto means = means_in(layout, residuals);
-    const std::vector<double> errors(means.size(), kSigma * std::sqrt(double(means.size()) / kBeams));
+    const std::vector<double> errors(means.size(),
+                                     kResidualSigma * std::sqrt(double(means.size()) / kBeamsPerLaser));
     profiles.push_back(layout.profile);
     for (std::size_t b = 0; b < means.size(); ++b) profiles.back().bins[b].error = errors[b];
     profiles.back().rms = systematic_rms(means, errors);
     profiles.back().p_value = profile_p_value(layout, means, errors);
   };
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+  for (std::size_t laser = 0; laser < kLaserCount; ++laser) {
     add("mirror angle", laser, &Beam::mirror);
     add("incidence", laser, &Beam::incidence);
     add("time", laser, &Beam::time);
@@ -109,7 +110,7 @@ TEST(DistinctProfiles, AreCommonWhereAllLasersDeviateInTime) {
     return (beam.laser == 1 ? -0.004 : 0.003) * std::sin(4 * beam.time);
   };
   const auto names = distinct(profiles_with(in_time));
-  EXPECT_EQ(names.size(), kLasers);
+  EXPECT_EQ(names.size(), kLaserCount);
   EXPECT_THAT(names, Each("all over time"));
 }
 

@@ -50,7 +50,7 @@ RangeErrors shots(std::uint64_t seed, const RangeErrorDraw& error, double step =
   return all;
 }
 
-double plain(Random& random, int, int) { return 4e-3 * standard(random); }
+double plain_error(Random& random, int, int) { return 4e-3 * standard(random); }
 
 /// Two peaks as of an LMS111, with a weight per beam.
 double about_two_values(Random& random, int beam, int) {
@@ -76,7 +76,7 @@ void expect_even(const NoiseModel& like, const RangeErrorDraw& error) {
   EXPECT_LT(test::unevenness(chances), test::kUnevenOnceInAThousand) << ::testing::PrintToString(chances);
 }
 
-TEST(GoodnessOfFit, HasUniformPValuesForPlainNoise) { expect_even({}, plain); }
+TEST(GoodnessOfFit, HasUniformPValuesForPlainNoise) { expect_even({}, plain_error); }
 
 TEST(GoodnessOfFit, HasUniformPValuesForTwoPeaks) { expect_even(with_two_peaks(), about_two_values); }
 
@@ -129,7 +129,7 @@ TEST(GoodnessOfFit, RejectsAutocorrelatedRanges) {
 }
 
 TEST(GoodnessOfFit, TestsASingleBeam) {
-  RangeErrors measured = shots(8, plain);
+  RangeErrors measured = shots(8, plain_error);
   std::ranges::fill(measured.beam, std::uint16_t{0});
   EXPECT_GT(goodness_of_noise_model(measured, {}, {}, BeamsOf::kSurfaces, 1).p_value, 0.05);
 }
@@ -137,7 +137,7 @@ TEST(GoodnessOfFit, TestsASingleBeam) {
 TEST(GoodnessOfFit, SimulatesQuantization) {
   constexpr double kStep = 8e-3;  // two standard deviations
   const FitStatistics reported =
-      goodness_of_noise_model(shots(7, plain, kStep), {}, {}, BeamsOf::kLaserAtRest, 1);
+      goodness_of_noise_model(shots(7, plain_error, kStep), {}, {}, BeamsOf::kLaserAtRest, 1);
   EXPECT_GT(reported.p_value, 0.05);
 }
 
