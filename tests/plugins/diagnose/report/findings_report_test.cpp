@@ -16,8 +16,8 @@ namespace {
 using namespace crisp::diagnose;
 using namespace crisp::estimate;
 using namespace crisp::simulate;
-using testing::HasSubstr;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
