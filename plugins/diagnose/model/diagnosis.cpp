@@ -20,8 +20,7 @@ class Diagnoser {
  public:
   Diagnoser(const SensorModel& start, const estimate::Sample& sample, const TermRegistry& terms,
             const DiagnosisSettings& settings, const DiagnosisReporter& report)
-      : sample_(sample),
-        terms_(terms),
+      : terms_(terms),
         settings_(settings),
         report_(report),
         start_(start.calibration()),
@@ -121,7 +120,6 @@ class Diagnoser {
     }
   }
 
-  const estimate::Sample& sample_;
   const TermRegistry& terms_;
   const DiagnosisSettings& settings_;
   const DiagnosisReporter& report_;
