@@ -14,6 +14,11 @@ constexpr const char* kTerm = "clock.skew";
 
 std::string parameter_of(const std::string& laser) { return laser + "." + kTerm + ".skew"; }
 
+void remove_lines(Calibration& calibration) {
+  for (LaserCalibration& laser : calibration.lasers)
+    std::erase_if(laser.terms, [](const TermParameters& one) { return one.term == kTerm; });
+}
+
 }  // namespace
 
 std::vector<double> skew_errors(const Rig& rig, const std::map<std::string, ClockMap>& clocks) {
@@ -31,9 +36,9 @@ void add_clock_lines(Calibration& calibration, estimate::ParameterPrior& prior,
                      const std::vector<double>& errors, double middle, const TermRegistry& terms) {
   TermParameters term = neutral_parameters(terms.get(kTerm)->info());
   term.parameters[1].value = middle;
+  remove_lines(calibration);
   for (std::size_t laser = 0; laser < calibration.lasers.size(); ++laser) {
     LaserCalibration& own = calibration.lasers[laser];
-    std::erase_if(own.terms, [](const TermParameters& one) { return one.term == kTerm; });
     if (!(errors[laser] > 0) || !std::isfinite(errors[laser])) continue;
     own.terms.push_back(term);
     prior.nominal[parameter_of(own.name)] = {.value = 0, .std_error = errors[laser]};
@@ -42,9 +47,7 @@ void add_clock_lines(Calibration& calibration, estimate::ParameterPrior& prior,
 
 estimate::Outcome without_clock_lines(const estimate::Outcome& outcome, const TermRegistry& terms) {
   Calibration calibration = outcome.model.calibration();
-  for (LaserCalibration& laser : calibration.lasers) {
-    std::erase_if(laser.terms, [](const TermParameters& one) { return one.term == kTerm; });
-  }
+  remove_lines(calibration);
   estimate::Outcome without = outcome;
   without.model = SensorModel(calibration, terms);
   without.free.clear();

@@ -99,13 +99,17 @@ Finding finding_of(const Hypothesis& hypothesis, const Calibration& calibration,
   return finding;
 }
 
+/// Whether a cause of one owner explains no less than the hypothesis.
+bool is_explained_by(const std::string& cause, std::size_t owner, const Hypothesis& one) {
+  return std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
+    return competitor.behind <= 0 && competitor.term == cause && competitor.owner == owner;
+  });
+}
+
 /// Whether the level of another hypothesis, of the same laser, explains no less than this one.
 bool is_explained_by_level_of(const Hypothesis& other, const Hypothesis& one) {
   return one.candidate.level.empty() && !other.candidate.level.empty() &&
-         std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
-           return competitor.behind <= 0 && competitor.term == other.candidate.level &&
-                  competitor.owner == other.candidate.owner;
-         });
+         is_explained_by(other.candidate.level, other.candidate.owner, one);
 }
 
 /// Whether an accepted hypothesis is the level of another one, in a family whose zero is a convention, or no
@@ -132,10 +136,7 @@ const Hypothesis& reported_with(const Hypothesis& one, const std::vector<Hypothe
 /// Whether the family of another hypothesis, of the same owner, explains no less than this one.
 bool is_explained_by_family_of(const Hypothesis& other, const Hypothesis& one) {
   return one.accepted && other.accepted &&
-         std::ranges::any_of(one.competitors, [&](const Hypothesis::Competitor& competitor) {
-           return competitor.behind <= 0 && competitor.term == other.candidate.family &&
-                  competitor.owner == other.candidate.owner;
-         });
+         is_explained_by(other.candidate.family, other.candidate.owner, one);
 }
 
 /// For each hypothesis of a cause, the one as part of which it is reported. What the family of a more
