@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <crisp/inspector.hpp>
+#include <crisp/registrar.hpp>
 
 namespace crisp::bag {
 

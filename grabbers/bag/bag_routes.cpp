@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 namespace crisp::bag {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/bag/bag_file.hpp"
 #include "grabbers/bag/bag_items.hpp"

@@ -8,7 +8,7 @@
 #include <crisp/capture_reader.hpp>
 #include <crisp/context.hpp>
 #include <crisp/error.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::capture {
 

@@ -9,7 +9,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/registrar.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/emulate/emulator.hpp"
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <string_view>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 #include "grabbers/capture/capture_report.hpp"

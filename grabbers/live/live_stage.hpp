@@ -6,7 +6,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/registrar.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/live/live_source.hpp"
 

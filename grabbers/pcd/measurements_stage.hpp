@@ -7,7 +7,7 @@
 #include <crisp/measurements.hpp>
 #include <crisp/pcd_table.hpp>
 #include <crisp/plate_trajectory.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::pcd_grabber {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/simulate/effect_injection.hpp"
 

@@ -9,7 +9,6 @@
 #include <string>
 #include <variant>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 #include "pipeline/files/nearest.hpp"

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <variant>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 #include "grabbers/simulate/inject_stage.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/table/encoder_lines.hpp"
 #include "pipeline/files/byte_stream.hpp"

@@ -9,7 +9,6 @@
 #include <istream>
 #include <utility>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 #include "pipeline/files/byte_stream.hpp"

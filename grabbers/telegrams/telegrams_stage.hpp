@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::telegrams {
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include <crisp/inspector.hpp>
+#include <crisp/registrar.hpp>
 
 #include "pipeline/app/batch_report.hpp"
 #include "pipeline/batch/effective_settings.hpp"

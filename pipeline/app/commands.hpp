@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/plugin_loader.hpp>
 #include <crisp/registrar.hpp>
 

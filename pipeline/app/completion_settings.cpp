@@ -2,7 +2,7 @@
 #include "pipeline/app/completion_settings.hpp"
 
 #include <crisp/error.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 #include "pipeline/files/yaml.hpp"
 #include "pipeline/stage/pipeline_plan.hpp"

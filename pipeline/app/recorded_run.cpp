@@ -4,8 +4,8 @@
 #include <system_error>
 #include <utility>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
 
 #include "pipeline/app/terminal.hpp"
 #include "pipeline/files/process_identity.hpp"

@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
+#include <crisp/error.hpp>
 
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/stage/files_written.hpp"

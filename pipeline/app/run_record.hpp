@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/runner.hpp>
 
 #include "pipeline/files/sha256.hpp"

@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 
 #include "pipeline/files/json_text.hpp"
 #include "pipeline/files/sha256.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 namespace crisp::batch {
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <system_error>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 
 #include "pipeline/batch/glob.hpp"
 #include "pipeline/batch/output_name.hpp"

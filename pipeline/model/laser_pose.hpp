@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include <crisp/beam.hpp>
+#include <crisp/term.hpp>
 
 namespace crisp::model {
 

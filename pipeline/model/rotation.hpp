@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include <crisp/beam.hpp>
+#include <crisp/term.hpp>
 
 #include "pipeline/model/chain.hpp"
 

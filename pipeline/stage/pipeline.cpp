@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 #include <crisp/pipeline.hpp>
 
 #include "pipeline/stage/unknown_names.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include <crisp/all_errors.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/error.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/rig_file.hpp>
 
 #include "pipeline/files/file_kind.hpp"

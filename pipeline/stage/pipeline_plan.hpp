@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 #include "pipeline/files/yaml.hpp"
 

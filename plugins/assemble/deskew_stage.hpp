@@ -11,7 +11,7 @@
 #include <crisp/cloud.hpp>
 #include <crisp/context.hpp>
 #include <crisp/sensor_model.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/data/pool.hpp"

@@ -5,7 +5,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/revolutions.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::assemble {
 

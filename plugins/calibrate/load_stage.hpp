@@ -6,7 +6,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/context.hpp>
 #include <crisp/rig.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::calibrate {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 #include <crisp/registrar.hpp>
 
 #include "pipeline/data/recordings.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 #include <crisp/registrar.hpp>
 
 #include "plugins/calibrate/cloud_objective.hpp"

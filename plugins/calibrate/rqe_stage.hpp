@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"

@@ -7,8 +7,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/clock_aligner.hpp>
 #include <crisp/context.hpp>
-#include <crisp/online_aligner.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::clock {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <crisp/alignment.hpp>
+#include <crisp/clock_aligner.hpp>
 #include <crisp/rig.hpp>
 
 #include "pipeline/clocks/pauses.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <crisp/online_aligner.hpp>
+#include <crisp/clock_aligner.hpp>
 
 #include "plugins/clock/hub_timings.hpp"
 

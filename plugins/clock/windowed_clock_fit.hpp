@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <crisp/alignment.hpp>
+#include <crisp/clock_aligner.hpp>
 #include <crisp/clock_map.hpp>
 
 #include "pipeline/clocks/clock_line.hpp"

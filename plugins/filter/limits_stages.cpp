@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/error.hpp>
 
 #include "pipeline/files/nearest.hpp"

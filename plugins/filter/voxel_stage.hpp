@@ -4,8 +4,8 @@
 #include <optional>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
-#include <crisp/voxels.hpp>
+#include <crisp/first_in_voxel.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::filter {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include <crisp/error.hpp>
-#include <crisp/voxels.hpp>
+#include <crisp/first_in_voxel.hpp>
 
 namespace crisp {
 

@@ -8,7 +8,7 @@
 #include <crisp/calibration.hpp>
 #include <crisp/context.hpp>
 #include <crisp/findings.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"

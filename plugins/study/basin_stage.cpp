@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugins/study/basin_stage.hpp"
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
 #include <crisp/error.hpp>
 

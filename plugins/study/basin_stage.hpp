@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/simulate/scenario.hpp"
 #include "plugins/study/basin.hpp"

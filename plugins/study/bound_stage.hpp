@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/study/planned_recording.hpp"
 #include "plugins/study/refinement_accuracy.hpp"

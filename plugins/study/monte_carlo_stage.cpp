@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/atomic_file.hpp>
 #include <crisp/error.hpp>
 #include <crisp/registrar.hpp>

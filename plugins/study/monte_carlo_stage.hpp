@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "grabbers/simulate/scenario.hpp"
 #include "plugins/study/monte_carlo.hpp"

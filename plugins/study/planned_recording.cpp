@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include <crisp/all_errors.hpp>
+#include <crisp/error.hpp>
 
 #include "grabbers/simulate/device_effects.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <crisp/calibration.hpp>
 #include <crisp/context.hpp>
-#include <crisp/inspector.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/registrar.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::write {
 

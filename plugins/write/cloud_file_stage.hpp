@@ -10,7 +10,7 @@
 #include <crisp/cloud.hpp>
 #include <crisp/context.hpp>
 #include <crisp/plate_trajectory.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/write/finite_points.hpp"
 #include "plugins/write/recording_borders.hpp"

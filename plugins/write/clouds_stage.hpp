@@ -11,7 +11,7 @@
 #include <crisp/context.hpp>
 #include <crisp/error.hpp>
 #include <crisp/pcd_table.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/batcher.hpp"
 

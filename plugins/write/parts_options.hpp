@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/pcd/parts.hpp"
 

@@ -7,7 +7,7 @@
 #include <crisp/atomic_file.hpp>
 #include <crisp/context.hpp>
 #include <crisp/plate_trajectory.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::write {
 

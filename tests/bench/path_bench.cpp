@@ -6,7 +6,7 @@
 #include <string>
 
 #include <crisp/builtin.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/runner.hpp>
 
 namespace crisp {

@@ -10,7 +10,7 @@
 
 #include <crisp/builtin.hpp>
 #include <crisp/findings.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/plugin_loader.hpp>
 #include <crisp/runner.hpp>
 

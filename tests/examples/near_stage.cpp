@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include <crisp/all_errors.hpp>
 #include <crisp/cloud.hpp>
 #include <crisp/context.hpp>
+#include <crisp/error.hpp>
 
 #include "example.hpp"
 

@@ -10,7 +10,6 @@
 
 #include <crisp/clock_aligner.hpp>
 #include <crisp/error.hpp>
-#include <crisp/online_aligner.hpp>
 
 #include "tests/fuzz/item_script.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include <crisp/calibration_file.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/rig_file.hpp>
 
 #include "pipeline/files/calibration_yaml.hpp"

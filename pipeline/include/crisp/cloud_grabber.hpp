@@ -5,9 +5,9 @@
 #include <string>
 
 #include <crisp/calibration.hpp>
+#include <crisp/clock_aligner.hpp>
 #include <crisp/cloud.hpp>
 #include <crisp/live_settings.hpp>
-#include <crisp/online_aligner.hpp>
 #include <crisp/revolutions.hpp>
 #include <crisp/rig.hpp>
 #include <crisp/source_grabber.hpp>

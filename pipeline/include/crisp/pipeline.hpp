@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <crisp/context.hpp>
@@ -78,5 +80,33 @@ Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run);
 /// @param rig_is_known  otherwise stages are not checked against it
 Pipeline build_pipeline(std::vector<StageSpec> specs, const RunSettings& run, std::vector<Error>& errors,
                         bool rig_is_known = true);
+
+/// Arguments from outside of the file: they override the file.
+struct PipelineArguments {
+  std::optional<std::filesystem::path> input = {};   ///< what ${input} stands for
+  std::optional<std::filesystem::path> output = {};  ///< what ${output} stands for, a folder
+  std::optional<std::filesystem::path> rig = {};     ///< the rig's file
+  std::optional<std::string> name = {};              ///< what ${name} stands for; otherwise it is as ${stem}
+  std::vector<std::string> set = {};  ///< "tag.option=value", or "variable=value" for one of `vars:`
+  bool only_validate = false;         ///< ${input} and ${output} need no value
+};
+
+/// A pipeline that is ready to run, and what it came from.
+struct LoadedPipeline {
+  Pipeline pipeline;               ///< its stages are made and connected
+  std::filesystem::path file;      ///< as it was given
+  std::filesystem::path rig_file;  ///< empty: the default rig
+};
+
+/// Reads the file, makes and connects the stages; sets `run.rig` and `run.output`. Opens no other file than
+/// the pipeline's and the rig's.
+/// @throws Errors  all mistakes that were found, in the order of the file
+LoadedPipeline load_pipeline(const std::filesystem::path& file, const PipelineArguments& arguments,
+                             RunSettings& run);
+
+/// The same for a pipeline's text.
+/// @param name  to call it by; what paths in it are relative to lies in the folder of such a file
+LoadedPipeline load_pipeline(std::string_view text, const std::filesystem::path& name,
+                             const PipelineArguments& arguments, RunSettings& run);
 
 }  // namespace crisp

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/oriented_plate.hpp"
 #include "plugins/calibrate/watch/calibration_check.hpp"

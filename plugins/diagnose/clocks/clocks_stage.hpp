@@ -9,7 +9,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/findings.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/clocks/pauses.hpp"
 #include "plugins/diagnose/clocks/clock_departure.hpp"

@@ -7,7 +7,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/findings.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/estimate/measurement_buffer.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include <crisp/beam.hpp>
+#include <crisp/term.hpp>
 
 #include "pipeline/estimate/surfel_jacobian.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/findings.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/diagnose/noise/goodness_of_fit.hpp"
 #include "plugins/diagnose/noise/stationary_scans.hpp"

@@ -6,7 +6,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/points.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 namespace crisp::diagnose {
 

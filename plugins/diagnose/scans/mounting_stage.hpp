@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/diagnose/scans/mounting.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <crisp/context.hpp>
 #include <crisp/measurements.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/diagnose/scans/passes.hpp"
 

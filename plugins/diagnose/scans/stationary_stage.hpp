@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/diagnose/scans/interleave.hpp"
 #include "plugins/diagnose/scans/stationary_fit_test.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "pipeline/data/goodness_of_fit_tests.hpp"
 #include "plugins/diagnose/scans/scan_prediction_errors.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <crisp/context.hpp>
-#include <crisp/stage_description.hpp>
+#include <crisp/stage.hpp>
 
 #include "plugins/write/picture/points.hpp"
 #include "plugins/write/picture/settings.hpp"

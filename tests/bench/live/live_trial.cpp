@@ -19,7 +19,7 @@
 
 #include <crisp/calibration_file.hpp>
 #include <crisp/effect_catalogue.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/runner.hpp>
 
 #include "grabbers/capture/register.hpp"

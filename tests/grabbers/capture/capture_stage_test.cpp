@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <crisp/error.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/runner.hpp>
 
 #include "grabbers/capture/register.hpp"

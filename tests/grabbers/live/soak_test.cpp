@@ -9,7 +9,6 @@
 #include <map>
 
 #include <crisp/clock_aligner.hpp>
-#include <crisp/online_aligner.hpp>
 
 #include "grabbers/emulate/emulator.hpp"
 #include "tests/grabbers/live/live_support.hpp"

@@ -12,7 +12,7 @@
 #include <crisp/calibration_file.hpp>
 #include <crisp/effect_catalogue.hpp>
 #include <crisp/error.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/runner.hpp>
 
 #include "pipeline/files/findings_file.hpp"

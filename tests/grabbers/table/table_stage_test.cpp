@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include <crisp/measurements.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 #include <crisp/plate_trajectory.hpp>
 #include <crisp/runner.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <crisp/builtin.hpp>
 #include <crisp/calibration_file.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 #include "pipeline/files/findings_file.hpp"
 #include "pipeline/files/renamed_names.hpp"

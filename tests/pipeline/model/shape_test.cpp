@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <crisp/beam.hpp>
+#include <crisp/term.hpp>
 
 namespace crisp {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 #include "pipeline/stage/pipeline_plan.hpp"
 #include "pipeline/stage/reference.hpp"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <crisp/atomic_file.hpp>
-#include <crisp/pipeline_file.hpp>
+#include <crisp/pipeline.hpp>
 
 #include "pipeline/stage/pipeline_plan.hpp"
 #include "tests/pipeline/stage/toy_stages.hpp"

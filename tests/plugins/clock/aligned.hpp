@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include <crisp/clock_aligner.hpp>
-#include <crisp/online_aligner.hpp>
 
 #include "tests/plugins/clock/simulated_scanner.hpp"
 

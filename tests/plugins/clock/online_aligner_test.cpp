@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include <crisp/online_aligner.hpp>
+#include <crisp/clock_aligner.hpp>
 
 #include "tests/plugins/clock/aligned.hpp"
 
