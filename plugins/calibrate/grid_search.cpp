@@ -40,6 +40,18 @@ double between(double a, double b, bool circular) {
   return std::abs(circular ? std::remainder(a - b, 2 * std::numbers::pi) : a - b);
 }
 
+std::vector<double> grid_around(double centre, double reach, int steps) {
+  std::vector<double> grid;
+  for (int i = -steps; i <= steps; ++i) grid.push_back(centre + reach * i / steps);
+  return grid;
+}
+
+std::vector<double> grid_on_circle(int steps) {
+  std::vector<double> grid;
+  for (int i = 0; i < steps; ++i) grid.push_back(2 * std::numbers::pi * i / steps);
+  return grid;
+}
+
 std::optional<CompetingMinimum> multistart_search(SensorModel& model, std::size_t parameter,
                                                   const std::vector<double>& grid, bool circular,
                                                   const estimate::Sample& sample, Measure& measure,

@@ -13,6 +13,12 @@ namespace crisp::calibrate {
 /// @param circular  whether it is an angle
 double between(double a, double b, bool circular);
 
+/// Values from reach below the centre to reach above, with as many steps to either side.
+std::vector<double> grid_around(double centre, double reach, int steps);
+
+/// [rad] Values around the circle.
+std::vector<double> grid_on_circle(int steps);
+
 /// [nat] Difference from which a local minimum is clearly higher than the lowest. Two lasers whose clouds
 /// have nothing in common have an RQE that is log 2 above that of two that see the same; in ordinary rooms
 /// the next local minimum is 0.3 to 0.5 higher.

@@ -23,19 +23,6 @@ namespace {
 using estimate::Sample;
 using estimate::slot;
 
-/// Values from reach below to reach above, with as many steps to either side.
-std::vector<double> around(double centre, double reach, int steps) {
-  std::vector<double> grid;
-  for (int i = -steps; i <= steps; ++i) grid.push_back(centre + reach * i / steps);
-  return grid;
-}
-
-std::vector<double> circle(int steps) {
-  std::vector<double> grid;
-  for (int i = 0; i < steps; ++i) grid.push_back(2 * std::numbers::pi * i / steps);
-  return grid;
-}
-
 /// The four steps, on a model that they move.
 class InPlaneCalibration {
  public:
@@ -63,7 +50,7 @@ class InPlaneCalibration {
     const double centre = estimate::centres_of(settings_.range, model_, free)[0];
     const double reach = estimate::range_of(settings_.range, model_.names()[free[0]]);
     constexpr int kSteps = 25;  // to either side
-    const auto grid = around(centre, reach * kSteps / (kSteps + 1), kSteps);
+    const auto grid = grid_around(centre, reach * kSteps / (kSteps + 1), kSteps);
     keep(multistart_search(model_, free[0], grid, false, own, measure_, settings_.range, narrowing()));
     if (bunches_) settle_eta(free[0], own);
   }
@@ -136,7 +123,8 @@ class InPlaneCalibration {
     std::erase_if(competitors_, [&](const CompetingMinimum& competitor) {
       return competitor.parameter == eta && std::abs(competitor.at - centre) < reach;
     });
-    keep(minimize_wall_residual(model_, eta, around(centre, reach, kSteps), false, own, settings_.sigma_to));
+    keep(minimize_wall_residual(model_, eta, grid_around(centre, reach, kSteps), false, own,
+                                settings_.sigma_to));
   }
 
   /// Where the rig gives no standard deviation, anywhere on the circle. Among equally low local minima the
@@ -147,25 +135,25 @@ class InPlaneCalibration {
     constexpr double kNear = 20 * data::kDegree;
     const int steps = bunches_ ? kFine : kSteps;
     const std::string& name = model_.names()[lambda];
-    const auto grid_around = [&](double centre, double reach) {
+    const auto within = [&](double centre, double reach) {
       const double half = std::ceil(reach / (2 * std::numbers::pi / steps));
-      return around(centre, reach, std::max(2, static_cast<int>(half)));
+      return grid_around(centre, reach, std::max(2, static_cast<int>(half)));
     };
     if (settings_.range.nominal.contains(name)) {
       const double centre = estimate::centres_of(settings_.range, model_, {lambda})[0];
-      const auto grid = grid_around(centre, estimate::range_of(settings_.range, name));
+      const auto grid = within(centre, estimate::range_of(settings_.range, name));
       return keep(to_best_lambda(model_, lambda, grid, false, pair));
     }
     const SensorModel start = model_;
     const double from = start.values()[static_cast<Eigen::Index>(lambda)];
     const auto is_near = [&](double value) { return between(value, from, true) < kNear; };
-    const auto competitor = to_best_lambda(model_, lambda, circle(steps), true, pair);
+    const auto competitor = to_best_lambda(model_, lambda, grid_on_circle(steps), true, pair);
     if (is_near(model_.values()[static_cast<Eigen::Index>(lambda)])) {
       if (competitor && is_near(competitor->at)) keep(competitor);
       return;
     }
     SensorModel near = start;
-    to_best_lambda(near, lambda, grid_around(from, kNear), false, pair);
+    to_best_lambda(near, lambda, within(from, kNear), false, pair);
     if (height_above(near, model_, pair) < kClearlyDeeper) {
       model_ = near;
     } else {

@@ -15,6 +15,7 @@
 #include "pipeline/estimate/recording_lags.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "plugins/calibrate/fit_check.hpp"
+#include "plugins/calibrate/refinement_restart.hpp"
 #include "plugins/calibrate/report.hpp"
 #include "plugins/calibrate/rig_check.hpp"
 #include "plugins/calibrate/rig_hypotheses.hpp"
@@ -33,34 +34,12 @@ bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refin
   });
 }
 
-/// The rig's nominal values, and their mirror image where the rig leaves the encoder's direction open.
-std::vector<Calibration> starts_of_rig(const Rig& rig) {
-  std::vector<Calibration> starts = {nominal_calibration(rig)};
-  if (rig.plate.direction == CountDirection::automatic) starts.push_back(mirrored(starts.front()));
-  return starts;
-}
-
-/// Whether views agree, and so do the data and the rig.
-bool fits(const Refinement& refined, const Rig& rig) {
-  if (!agrees_well(refined) || !refined.outcome.caveats.empty()) return false;
-  const Calibration found = estimate::calibration_of(refined.outcome, rig);
-  const RigCheck check = check_with_rig(found, rig, {});
-  return check.caveats.empty() || in_direction_of_rig(found, rig, check);
-}
-
-estimate::RoundReporter reporter(Context& context) {
-  return [&context](int round) {
-    context.progress(static_cast<double>(round) / (round + 4), fmt::format("round {}", round + 1));
-    return !context.interrupted();
-  };
-}
-
 }  // namespace
 
 void RefineStage::describe(StageDescription<RefineStage>& d) {
   d.name("calibrate.refine").summary("refines a calibration by least squares against flat surfaces");
   d.details(
-      "Weighted least squares in the distances of all beams from their flat surfaces (surfels), with the surfaces' planes as unknowns. Unlike the optimum of an entropy it is unbiased, with a tenth of the scatter, but it needs a start within some centimetres: calibrate.rqe, or calibrate.load. If its views disagree, it is repeated from the rig's nominal values, and that result is taken if it fits. Unobservable parameters stay at the start's values.\n\n"
+      "Weighted least squares in the distances of all beams from their flat surfaces (surfels), with the surfaces' planes as unknowns. Unlike the optimum of an entropy it is unbiased, with a tenth of the scatter, but it needs a start within some centimetres: calibrate.rqe, or calibrate.load. If its views disagree, it is repeated from the rig's nominal values, then with one laser added after the other, and the first result that fits is taken. Unobservable parameters stay at the start's values.\n\n"
       "The clocks' standard errors, where they are known (clock.convex_hull), are part of those of eta.\n\n"
       "Several recordings (separated by pauses of 5 s) may be of different places: surfaces are segmented in each by itself, and each has lags of its own, whose mean is eta.\n\n"
       "If all beams lie in the plate's plane (two of each laser), the walls are assumed to be upright.");
@@ -126,7 +105,7 @@ void RefineStage::finish(Outputs& out, Context& context) {
   Calibration with_terms = *start_;
   estimate::add_requested_terms(with_terms, settings_.terms, terms);
   const SensorModel start(with_terms, terms);
-  const estimate::RoundReporter on_round = reporter(context);
+  const estimate::RoundReporter on_round = rounds_of(context);
   Refinement refined = estimate::refine_by_surfels(start, sample, settings_, on_round);
   if (data::RecordingNumbers(*sample.plate).count() > 1 && !context.interrupted()) {
     const estimate::RecordingLags lags =
@@ -135,7 +114,8 @@ void RefineStage::finish(Outputs& out, Context& context) {
     sample = estimate::with_common_lags(std::move(sample), lags);
     refined = estimate::refine_by_surfels(start, sample, settings_, on_round);
   }
-  if (auto better = refined_from_rig(sample, refined, context)) refined = std::move(*better);
+  if (auto better = refined_from_another_start(refined, sample, *start_, settings_, context))
+    refined = std::move(*better);
   if (context.interrupted()) return;
 
   const auto halves = estimate::cross_validate(
@@ -158,35 +138,6 @@ void RefineStage::finish(Outputs& out, Context& context) {
   if (halves) calibration.quality["cross_validation"] = halves->ratio();
   report(calibration, *start_, context);
   out.give(std::move(calibration));
-}
-
-std::optional<Refinement> RefineStage::refined_from_rig(const estimate::Sample& sample,
-                                                        const Refinement& refined, Context& context) const {
-  const bool contradicts_rig =
-      !check_with_rig(estimate::calibration_of(refined.outcome, context.rig()), context.rig(), {})
-           .caveats.empty();
-  if (refined.views.empty() || (agrees_well(refined) && !contradicts_rig)) return std::nullopt;
-  const auto& terms = context.run().registrar->get<TermRegistry>();
-  for (Calibration& from : starts_of_rig(context.rig())) {
-    if (context.interrupted()) return std::nullopt;
-    from.direction = start_->direction;
-    estimate::add_requested_terms(from, settings_.terms, terms);
-    try {
-      const SensorModel start(from, terms);
-      RefinementSettings settings = settings_;
-      for (auto& [name, known] : settings.prior.nominal)
-        known.value = estimate::picked(start, {start.index(name)})[0];
-      Refinement again = estimate::refine_by_surfels(start, sample, settings, reporter(context));
-      if (!fits(again, context.rig())) continue;
-      context.print(fmt::format(
-          "refined from the rig's nominal values, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",
-          100 * least_agreement(refined), 100 * least_agreement(again)));
-      return again;
-    } catch (const Error&) {
-      continue;  // no flat surfaces from there
-    }
-  }
-  return std::nullopt;
 }
 
 std::vector<std::string> RefineStage::mistakes(const estimate::Sample& sample, const Refinement& refined,

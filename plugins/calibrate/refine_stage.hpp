@@ -30,12 +30,6 @@ class RefineStage final : public Stage {
   void judge(const estimate::Sample& sample, const estimate::Refinement& refined, Calibration& calibration,
              Context& context) const;
 
-  /// A refinement from the rig's nominal values that fits, where the given one does not: the entropy of a
-  /// short recording may be least far from the optimum.
-  std::optional<estimate::Refinement> refined_from_rig(const estimate::Sample& sample,
-                                                       const estimate::Refinement& refined,
-                                                       Context& context) const;
-
   /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree
   /// well, or the data determine little.
   std::vector<std::string> mistakes(const estimate::Sample& sample, const estimate::Refinement& refined,

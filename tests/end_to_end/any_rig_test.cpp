@@ -93,6 +93,14 @@ TEST_F(AnyRig, VeilsOfMixedPixelsAreNoWalls) { is_right_and_trusted(8060, {}); }
 
 TEST_F(AnyRig, AMinimumThatContradictsTheRigIsLeftByItsValues) { is_right_and_trusted(8036, {}); }
 
+TEST_F(AnyRig, ALaserThatAgreesWithNoOtherIsAddedToThoseThatAgree) { is_right_and_trusted(9012, {}); }
+
+TEST_F(AnyRig, LasersOfWhichFewAgreeAreCalibratedOneByOne) {
+  is_right_and_trusted(6022, {"fault=none", "duration=8"});
+}
+
+TEST_F(AnyRig, AMinimumThatContradictsTheRigIsLeftLaserByLaser) { is_right_and_trusted(9052, {}); }
+
 TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {
   is_untrusted_with(90205,
                     {"fault=counts", "counts=4096", "counts_fault=1", "duration=7", "kind=lms1xx", "lasers=2",
