@@ -52,9 +52,11 @@ struct Miss {
   std::size_t pairs = 0;
 };
 
+constexpr double kNear = 0.04;   // [rad] farther beams are not compared
+constexpr double kClose = 0.01;  // [rad] a scene hardly differs between such
+
 /// Compares what was seen with what is seen a period later, at the nearest angle.
-void add_misses(const std::vector<Comparison>& comparisons, double period, Miss& miss) {
-  constexpr double kNear = 0.04;  // [rad]
+void add_misses(const std::vector<Comparison>& comparisons, double period, double farthest, Miss& miss) {
   std::size_t next = 0;
   for (const Comparison& comparison : comparisons) {
     const double then = comparison.angle + period;
@@ -62,17 +64,17 @@ void add_misses(const std::vector<Comparison>& comparisons, double period, Miss&
            std::abs(comparisons[next + 1].angle - then) <= std::abs(comparisons[next].angle - then)) {
       ++next;
     }
-    if (std::abs(comparisons[next].angle - then) > kNear) continue;
+    if (std::abs(comparisons[next].angle - then) > farthest) continue;
     miss.sum += std::min(kMax, std::abs(comparisons[next].range - comparison.range));
     ++miss.pairs;
   }
 }
 
 /// [m] Mean difference after a period; infinite where too few scans have a counterpart.
-double miss_of(const Comparisons& comparisons, double period) {
+double miss_of(const Comparisons& comparisons, double period, double farthest = kNear) {
   constexpr std::size_t kFew = 200;
   Miss miss;
-  for (const auto& own : comparisons) add_misses(own, period, miss);
+  for (const auto& own : comparisons) add_misses(own, period, farthest, miss);
   return miss.pairs < kFew ? HUGE_VAL : miss.sum / static_cast<double>(miss.pairs);
 }
 
@@ -97,12 +99,15 @@ std::optional<SceneRepeat> scene_repeat(const Sample& sample) {
   const Comparisons comparisons = comparisons_of(sample);
   const double at_2pi = miss_of(comparisons, kTurn);
   if (!std::isfinite(at_2pi)) return std::nullopt;
+  const double close = miss_of(comparisons, kTurn, kClose);
+  const double close_at_2pi = std::isfinite(close) ? close : 0;
   const double elsewhere = miss_elsewhere(comparisons);
   std::vector<SceneRepeat> nearest;  // one for each factor
   for (const double factor : kFactors) {
     SceneRepeat best{.angle = factor * kTurn,
                      .miss = miss_of(comparisons, factor * kTurn),
                      .at_2pi = at_2pi,
+                     .close_at_2pi = close_at_2pi,
                      .elsewhere = elsewhere};
     for (double share = 1 - kAround; share < 1 + kAround + kStep / 2; share += kStep) {
       const double miss = miss_of(comparisons, factor * share * kTurn);
@@ -128,8 +133,10 @@ bool contradicts_counts(const SceneRepeat& period) {
   // the encoder has slipped, and the angle after which it repeats better is one where slips happen to cancel.
   constexpr double kRepeats = 0.5;
   if (is_multiple && period.at_2pi < kRepeats * period.elsewhere) return false;
-  return is_part || (std::abs(share - 1) > 0.003 && period.miss < kClearly * period.at_2pi &&
-                     period.miss < period.at_2pi - kMin);
+  // At a constant rate beams may lie between those of the turn before, and on those of some turns before.
+  const double at_2pi = is_multiple ? period.close_at_2pi : period.at_2pi;
+  return is_part ||
+         (std::abs(share - 1) > 0.003 && period.miss < kClearly * at_2pi && period.miss < at_2pi - kMin);
 }
 
 std::string counts_caveat(const SceneRepeat& period) {

@@ -10,10 +10,11 @@ namespace crisp::estimate {
 
 /// After which angle of the plate, by its encoder, a laser sees the same again.
 struct SceneRepeat {
-  double angle = 0;      ///< [rad] 2π if the encoder's counts a revolution are right
-  double miss = 0;       ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
-  double at_2pi = 0;     ///< [m] and after 2π
-  double elsewhere = 0;  ///< [m] and after angles at which a scene does not repeat
+  double angle = 0;   ///< [rad] 2π if the encoder's counts a revolution are right
+  double miss = 0;    ///< [m] by how much ranges differ after that angle, in the mean over all up to 0.5 m
+  double at_2pi = 0;  ///< [m] and after 2π
+  double close_at_2pi = 0;  ///< [m] the same of beams within 0.01 rad of that; 0 where there are few
+  double elsewhere = 0;     ///< [m] and after angles at which a scene does not repeat
 };
 
 /// Compares the ranges of the same beam of the same laser after one turn and another, without any

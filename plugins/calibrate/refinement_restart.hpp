@@ -10,8 +10,7 @@
 
 namespace crisp::calibrate {
 
-/// Shows the rounds of a run, and ends the refinement where the run is
-/// interrupted.
+/// Shows a refinement's rounds as progress, and ends it where the run is interrupted.
 estimate::RoundReporter rounds_of(Context& context);
 
 /// A refinement that fits, where the given one, whose views disagree or which contradicts the rig, ended in a

@@ -21,7 +21,7 @@ std::vector<bool> agreeing_lasers(const estimate::Refinement& refined);
 ///
 /// @param start     where the others' τ, α and η start
 /// @param aligned   the lasers that agree already, at least one
-/// @param settings  of the refinements; its prior's nominal values bound λ, with three standard deviations
+/// @param settings  of the refinements
 /// @param range     whose ranges of λ are searched, around their centres
 /// @throws Error  if no flat surface is seen
 SensorModel calibrated_one_by_one(const SensorModel& start, std::vector<bool> aligned,

@@ -109,6 +109,12 @@ TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {
                     "plate.counts_per_revolution: 4096 (the rig has 16384)");
 }
 
+TEST_F(AnyRig, BeamsThatCoincideAfterThreeTurnsAtAConstantRateShowNoWrongCounts) {
+  const auto outcome = calibrate(9019, {});
+  EXPECT_THAT(outcome.console, HasSubstr("these data determine 2 of 7 parameters only"));
+  EXPECT_THAT(outcome.console, testing::Not(HasSubstr("counts_per_revolution")));
+}
+
 TEST_F(AnyRig, ADirectionThatOnlyTheRigKnowsIsCalledSo) {
   const auto outcome = calibrate(573, {"duration=6"});  // stated wrongly, and a mirror image agrees as well
   EXPECT_THAT(outcome.console, HasSubstr("counter_clockwise is known from the rig only"));

@@ -51,11 +51,20 @@ TEST(SceneRepeat, IsFoundWhereTheCountsAreWrongByAFewPerCentOrByAFactor) {
 }
 
 TEST(SceneRepeat, IsNoMultipleWhereTheSceneNearlyRepeatsAfterATurn) {
-  const SceneRepeat of_slips{.angle = 3.976 * kTurn, .miss = 0.043, .at_2pi = 0.074, .elsewhere = 0.3};
+  const SceneRepeat of_slips{
+      .angle = 3.976 * kTurn, .miss = 0.043, .at_2pi = 0.074, .close_at_2pi = 0.07, .elsewhere = 0.3};
   EXPECT_FALSE(contradicts_counts(of_slips));
   SceneRepeat of_counts = of_slips;
-  of_counts.at_2pi = 0.28;
+  of_counts.at_2pi = of_counts.close_at_2pi = 0.28;
   EXPECT_TRUE(contradicts_counts(of_counts));
+}
+
+TEST(SceneRepeat, IsNoMultipleWhereNoBeamsAreCloseAfterATurn) {
+  SceneRepeat period{
+      .angle = 3 * kTurn, .miss = 0.023, .at_2pi = 0.057, .close_at_2pi = 0, .elsewhere = 0.07};
+  EXPECT_FALSE(contradicts_counts(period)) << "at a constant rate they lie between those of the turn before";
+  period.close_at_2pi = 0.057;
+  EXPECT_TRUE(contradicts_counts(period));
 }
 
 TEST(SceneRepeat, DoesNotBlameTheCountsForSlips) {
