@@ -99,19 +99,34 @@ class Restart {
     }
   }
 
+  /// With few beams first, which most starts that lead nowhere do not pass.
   std::optional<Refinement> fitting(const SensorModel& start, const RefinementSettings& settings,
                                     std::string_view origin) {
-    if (context_.interrupted()) return std::nullopt;
-    try {
-      Refinement again = estimate::refine_by_surfels(start, sample_, settings, rounds_of(context_));
-      if (!fits(again, rig_)) return std::nullopt;
+    constexpr std::size_t kFew = 200'000;
+    constexpr std::uint64_t kSeed = 1;
+    const bool has_many = sample_.beams.size() > 2 * kFew;
+    const auto few =
+        has_many ? refined_from(start, estimate::thin_evenly(sample_, kFew, kSeed), settings) : std::nullopt;
+    if (has_many && !few) return std::nullopt;
+    auto again = refined_from(few ? few->outcome.model : start, sample_, settings);
+    if (again) {
       context_.print(fmt::format(
           "refined from {}, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",
-          origin, 100 * least_agreement(refined_), 100 * least_agreement(again)));
-      return again;
-    } catch (const Error&) {
-      return std::nullopt;  // no flat surfaces from there
+          origin, 100 * least_agreement(refined_), 100 * least_agreement(*again)));
     }
+    return again;
+  }
+
+  /// A refinement that fits.
+  std::optional<Refinement> refined_from(const SensorModel& start, const estimate::Sample& sample,
+                                         const RefinementSettings& settings) {
+    if (context_.interrupted()) return std::nullopt;
+    try {
+      Refinement again = estimate::refine_by_surfels(start, sample, settings, rounds_of(context_));
+      if (fits(again, rig_)) return again;
+    } catch (const Error&) {  // no flat surfaces from there
+    }
+    return std::nullopt;
   }
 
   const Refinement& refined_;
