@@ -232,6 +232,34 @@ ViewPartition by_quarter(const Sample& sample) {
   return partition;
 }
 
+/// Nothing where the plate's rate hardly varies.
+std::optional<ViewPartition> by_rate(const Sample& sample, const std::vector<std::string>& names) {
+  constexpr double kLeastVariation = 0.2;  // of the largest rate
+  ViewPartition partition{
+      .views = {},
+      .of_beam = {},
+      .advice =
+          "its eta and lambda are probably in a wrong local minimum, in which errors of both cancel at one rate. Record longer and at more rates, or start from calibrate.load"};
+  std::vector<double> rates;
+  for (const double time : sample.beams.time) {
+    const auto plate = sample.plate->at(time);
+    rates.push_back(plate ? plate->rate : 0);
+  }
+  if (rates.empty()) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(rates);
+  if (high - low < kLeastVariation * std::max(std::abs(low), std::abs(high))) return std::nullopt;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const std::uint32_t is_higher = rates[i] > (low + high) / 2 ? 1 : 0;
+    partition.of_beam.push_back(2U * sample.beams.laser[i] + is_higher);
+  }
+  for (std::size_t laser = 0; laser < names.size(); ++laser) {
+    partition.views.push_back(names[laser] + " at lower rates of the plate");
+    partition.views.push_back(names[laser] + " at higher rates");
+    partition.groups.insert(partition.groups.end(), 2, laser);
+  }
+  return partition;
+}
+
 }  // namespace
 
 std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vector<std::string>& names) {
@@ -239,6 +267,7 @@ std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vect
   if (names.size() > 1) partitions.push_back(by_laser(sample, names));
   partitions.push_back(by_half(sample));
   partitions.push_back(by_quarter(sample));
+  if (auto of_rates = by_rate(sample, names)) partitions.push_back(std::move(*of_rates));
   return partitions;
 }
 
@@ -247,6 +276,7 @@ std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
                                               const ViewErrors& errors) {
   constexpr double kMinPart = 0.02;  // of a view's beams: fewer are no reason for a caveat
   constexpr double kMinBeams = 500;
+  constexpr double kMinOfGroup = 200;  // a plate that stops shows one laser few walls meanwhile
   const std::size_t n = partition.views.size();
   const Directions directions(beams.directions);
   std::vector<PairSums> of_surfel(surfels.surfels.size(), PairSums(n));
@@ -256,8 +286,8 @@ std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
     pieces.find_beams_through(surfels.beams_of(surfel), directions);
     pieces.add_to(of_surfel[s], errors);
   });
-  const double least =
-      std::max(kMinBeams, kMinPart * static_cast<double>(beams.points.size()) / static_cast<double>(n));
+  const double part = kMinPart * static_cast<double>(beams.points.size()) / static_cast<double>(n);
+  const double least = partition.groups.empty() ? std::max(kMinBeams, part) : kMinOfGroup;
   std::vector<ViewConsistency> pairs;
   for (const Orientation orientation : {Orientation::upright, Orientation::level}) {
     PairSums all(n);
@@ -266,6 +296,7 @@ std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
     }
     for (std::size_t pair = 0; pair < n * n; ++pair) {
       if (all.beams[pair] == 0 || all.beams[pair] < least) continue;
+      if (!partition.groups.empty() && partition.groups[pair / n] != partition.groups[pair % n]) continue;
       pairs.push_back({.view = partition.views[pair / n],
                        .other = partition.views[pair % n],
                        .orientation = orientation,

@@ -16,11 +16,14 @@ struct ViewPartition {
   std::vector<std::string> views;      ///< in words: "laser1", "the fronts", "the first quarter"
   std::vector<std::uint32_t> of_beam;  ///< index into `views` of each beam
   std::string advice;                  ///< cause of inconsistent views, and what to do; "{}" is the suspect
+  std::vector<std::size_t> groups =
+      {};  ///< of each view, which is compared with others of its group; or empty
 };
 
 /// The partitions that show a wrong calibration: by laser (if there are several), which a wrong λ, τ or α
-/// parts; by half of the sweep, which a wrong mount, mirror or eccentric encoder parts; and by quarter of
-/// each recording, which an encoder that slips or drifts parts.
+/// parts; by half of the sweep, which a wrong mount, mirror or eccentric encoder parts; by quarter of each
+/// recording, which an encoder that slips or drifts parts; and each laser's beams by the plate's rate (if it
+/// varies), which a wrong η parts that a wrong λ makes up for at the usual rate.
 ///
 /// @param names  of the lasers, in the order of their numbers
 std::vector<ViewPartition> view_partitions(const Sample& sample, const std::vector<std::string>& names);

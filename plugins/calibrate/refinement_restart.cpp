@@ -58,9 +58,7 @@ class Restart {
 
   std::optional<Refinement> one_by_one() {
     const std::vector<bool> agreeing = agreeing_lasers(refined_);
-    const bool all_agree = std::ranges::all_of(agreeing, [](bool is_one) { return is_one; });
-    if (all_agree && !contradicts_rig(refined_, rig_)) return std::nullopt;
-    if (!all_agree) {
+    if (std::ranges::count(agreeing, false) > 0) {
       if (auto again = aligned(refined_.outcome.model, agreeing, "the lasers that agree")) return again;
     }
     std::vector<bool> first(agreeing.size(), false);

@@ -101,6 +101,8 @@ TEST_F(AnyRig, LasersOfWhichFewAgreeAreCalibratedOneByOne) {
 
 TEST_F(AnyRig, AMinimumThatContradictsTheRigIsLeftLaserByLaser) { is_right_and_trusted(9052, {}); }
 
+TEST_F(AnyRig, ALagThatAWrongLambdaMakesUpForShowsAtStops) { is_right_and_trusted(9092, {}); }
+
 TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {
   is_untrusted_with(90205,
                     {"fault=counts", "counts=4096", "counts_fault=1", "duration=7", "kind=lms1xx", "lasers=2",

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <numbers>
 
 #include "tests/pipeline/estimate/support.hpp"
 
@@ -45,9 +46,11 @@ class Walls {
     surfels.surfels.push_back(surfel);
   }
 
-  std::vector<ViewConsistency> consistency(const std::vector<std::string>& names, double angle = 0) const {
+  std::vector<ViewConsistency> consistency(const std::vector<std::string>& names, double angle = 0,
+                                           const std::vector<std::size_t>& groups = {}) const {
     const BeamsView beams{.points = points_.view(), .directions = directions_.view(), .views = views};
-    return view_consistency(surfels, beams, {.views = names, .of_beam = views, .advice = {}},
+    return view_consistency(surfels, beams,
+                            {.views = names, .of_beam = views, .advice = {}, .groups = groups},
                             {.range = 0.01, .angle = angle});
   }
 
@@ -117,6 +120,15 @@ TEST(ViewConsistency, WhatThePlateMayBeTurnedByCountsWithTheDistance) {
   EXPECT_EQ(walls.consistency({"a", "b"}, 1e-3)[0].share, 1);  // 20 mm there
 }
 
+TEST(ViewConsistency, GroupsOfViewsAreComparedWithinThemselvesAndByFewerBeams) {
+  Walls walls;
+  walls.add(2,
+            {{.view = 0, .beams = 300}, {.view = 1, .off = 0.05, .beams = 300}, {.view = 2, .beams = 300}});
+  EXPECT_THAT(walls.consistency({"a", "b", "c"}), IsEmpty());
+  EXPECT_THAT(walls.consistency({"a", "b", "c"}, 0, {0, 0, 1}),
+              UnorderedElementsAre(pair_of("a", "b", 300, 0), pair_of("b", "a", 300, 0)));
+}
+
 TEST(ViewConsistency, UprightAndLevelSurfacesAreApart) {
   Walls walls;
   walls.add(2, {{.view = 0, .beams = 600}, {.view = 1, .beams = 600}});
@@ -148,12 +160,12 @@ TEST(ViewConsistency, TheViewThatAgreesWithNoOtherIsTheSuspect) {
   EXPECT_THAT(inconsistency(partition, pairs).value(), HasSubstr("check both"));
 }
 
-TEST(ViewPartitions, DivideByLaserHalfAndQuarterOfEachRecording) {
+TEST(ViewPartitions, DivideByLaserHalfQuarterOfEachRecordingAndRate) {
   auto scanner = misplaced_scanner(1, 1.0);
   const auto recording = simulate_measurements(scanner, office());
   const Sample sample = sample_of(recording);
   const auto partitions = view_partitions(sample, {"laser1", "laser2", "laser3"});
-  ASSERT_EQ(partitions.size(), 3U);
+  ASSERT_EQ(partitions.size(), 4U);
   std::vector<std::size_t> quarters(4);
   for (std::size_t i = 0; i < sample.beams.size(); ++i) {
     EXPECT_EQ(partitions[0].of_beam[i], sample.beams.laser[i]);
@@ -165,7 +177,32 @@ TEST(ViewPartitions, DivideByLaserHalfAndQuarterOfEachRecording) {
     // short.
     EXPECT_GT(static_cast<double>(beams), 0.1 * static_cast<double>(sample.beams.size()));
   }
-  EXPECT_EQ(view_partitions(sample, {"laser1"}).size(), 2U);
+  EXPECT_EQ(view_partitions(sample, {"laser1"}).size(), 3U);
+}
+
+TEST(ViewPartitions, SplitALasersBeamsByTheRateOfThePlate) {
+  auto scanner = misplaced_scanner(1, 8.0);
+  scanner.motion.kind = MotionKind::stop_and_go;
+  const auto recording = simulate_measurements(scanner, office());
+  const Sample sample = sample_of(recording);
+  const ViewPartition partition = view_partitions(sample, {"laser1", "laser2", "laser3"}).back();
+  ASSERT_EQ(partition.views.size(), 6U);
+  std::vector<std::size_t> beams(6);
+  for (std::size_t i = 0; i < sample.beams.size(); ++i) {
+    const double rate = sample.plate->at(sample.beams.time[i])->rate;
+    const bool is_fast = rate > 2 * std::numbers::pi;  // half of the largest rate, 2 Hz
+    EXPECT_EQ(partition.of_beam[i], 2U * sample.beams.laser[i] + (is_fast ? 1 : 0)) << rate;
+    ++beams[partition.of_beam[i]];
+  }
+  EXPECT_THAT(beams, testing::Each(testing::Gt(1000U)));
+  EXPECT_THAT(partition.groups, testing::ElementsAre(0, 0, 1, 1, 2, 2));
+}
+
+TEST(ViewPartitions, DoNotSplitByAConstantRate) {
+  auto scanner = misplaced_scanner(1, 2.0);
+  scanner.motion.kind = MotionKind::constant;
+  const auto recording = simulate_measurements(scanner, office());
+  EXPECT_EQ(view_partitions(sample_of(recording), {"laser1", "laser2", "laser3"}).size(), 3U);
 }
 
 }  // namespace
