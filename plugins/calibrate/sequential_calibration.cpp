@@ -100,6 +100,7 @@ SensorModel calibrated_one_by_one(const SensorModel& start, std::vector<bool> al
         refined_alone(model, static_cast<std::size_t>(std::ranges::find(aligned, true) - aligned.begin()));
   for (std::size_t laser = 0; laser < aligned.size(); ++laser) {
     if (aligned[laser]) continue;
+    if (report && !report(0)) break;
     aligned[laser] = true;
     const estimate::Sample own =
         estimate::select(sample, [&](std::size_t i) { return aligned[sample.beams.laser[i]]; });

@@ -23,6 +23,7 @@ std::vector<bool> agreeing_lasers(const estimate::Refinement& refined);
 /// @param aligned   the lasers that agree already, at least one
 /// @param settings  of the refinements
 /// @param range     whose ranges of λ are searched, around their centres
+/// @param report    called in each round, and before each laser; false ends the work
 /// @throws Error  if no flat surface is seen
 SensorModel calibrated_one_by_one(const SensorModel& start, std::vector<bool> aligned,
                                   const estimate::Sample& sample, const estimate::ParameterPrior& range,
