@@ -46,6 +46,10 @@ std::vector<double> grid_around(double centre, double reach, int steps) {
   return grid;
 }
 
+std::vector<double> grid_of_step(double centre, double reach, double step) {
+  return grid_around(centre, reach, std::max(2, static_cast<int>(std::ceil(reach / step))));
+}
+
 std::vector<double> grid_on_circle(int steps) {
   std::vector<double> grid;
   for (int i = 0; i < steps; ++i) grid.push_back(2 * std::numbers::pi * i / steps);

@@ -16,6 +16,9 @@ double between(double a, double b, bool circular);
 /// Values from reach below the centre to reach above, with as many steps to either side.
 std::vector<double> grid_around(double centre, double reach, int steps);
 
+/// The same with steps of at most `step`, two or more to either side.
+std::vector<double> grid_of_step(double centre, double reach, double step);
+
 /// [rad] Values around the circle.
 std::vector<double> grid_on_circle(int steps);
 

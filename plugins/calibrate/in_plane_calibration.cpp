@@ -136,8 +136,7 @@ class InPlaneCalibration {
     const int steps = bunches_ ? kFine : kSteps;
     const std::string& name = model_.names()[lambda];
     const auto within = [&](double centre, double reach) {
-      const double half = std::ceil(reach / (2 * std::numbers::pi / steps));
-      return grid_around(centre, reach, std::max(2, static_cast<int>(half)));
+      return grid_of_step(centre, reach, 2 * std::numbers::pi / steps);
     };
     if (settings_.range.nominal.contains(name)) {
       const double centre = estimate::centres_of(settings_.range, model_, {lambda})[0];

@@ -2,7 +2,6 @@
 #include "plugins/calibrate/sequential_calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <string>
 
@@ -48,7 +47,7 @@ void search_lambda(SensorModel& model, std::size_t laser, const estimate::Sample
   const std::size_t lambda = estimate::slot(model, laser, estimate::kLambda);
   const double centre = estimate::centres_of(range, model, {lambda})[0];
   const double reach = estimate::range_of(range, model.names()[lambda]);
-  const auto grid = grid_around(centre, reach, std::max(2, static_cast<int>(std::ceil(reach / kStep))));
+  const auto grid = grid_of_step(centre, reach, kStep);
   const estimate::Sample thin =
       estimate::thin_by_area(estimate::placeable(model, sample), model, kBeams, kSeed);
   multistart_search(model, lambda, grid, false, thin, measure, range, kKernel);
