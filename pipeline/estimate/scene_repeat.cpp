@@ -135,8 +135,9 @@ bool contradicts_counts(const SceneRepeat& period) {
   if (is_multiple && period.at_2pi < kRepeats * period.elsewhere) return false;
   // At a constant rate beams may lie between those of the turn before, and on those of some turns before.
   const double at_2pi = is_multiple ? period.close_at_2pi : period.at_2pi;
-  return is_part ||
-         (std::abs(share - 1) > 0.003 && period.miss < kClearly * at_2pi && period.miss < at_2pi - kMin);
+  // Where a scene repeats after no angle, one is as good as another.
+  if (is_part) return period.miss < kClearly * period.elsewhere;
+  return std::abs(share - 1) > 0.003 && period.miss < kClearly * at_2pi && period.miss < at_2pi - kMin;
 }
 
 std::string counts_caveat(const SceneRepeat& period) {

@@ -160,6 +160,7 @@ Attempt refine_once(const SensorModel& start, const Sample& sample, const Refine
   for (const auto& each : {caveat, caveat_of_most, caveat_of_fixed}) {
     if (each) result.outcome.caveats.push_back(*each);
   }
+  result.determines_little = caveat_of_most.has_value();
   result.rounds = round;
   result.restarts = starts - 1;
   result.converged = converged;

@@ -53,6 +53,7 @@ struct Refinement {
   int rounds = 0;
   int restarts = 0;  ///< how often it began anew since its start was far off
   bool converged = false;
+  bool determines_little = false;  ///< fewer than half of the parameters, which is one of the caveats
   std::shared_ptr<const SurfaceMap> surfaces;  ///< that the model was fitted to; null: there are none
 };
 

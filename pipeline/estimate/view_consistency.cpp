@@ -221,7 +221,8 @@ ViewPartition by_quarter(const Sample& sample) {
                 "the recording's third quarter", "the recording's last quarter"},
       .of_beam = {},
       .advice =
-          "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; `crisp diagnose` searches for the cause, and corrects a slip"};
+          "the encoder slipped or lost counts, the rig's counts_per_revolution is wrong, or the scanner was moved. Check the encoder; `crisp diagnose` searches for the cause, and corrects a slip",
+      .is_by_time = true};
   const auto recordings = data::recordings_of(*sample.plate);
   const data::RecordingNumbers numbers(*sample.plate);
   for (const double time : sample.beams.time) {
@@ -239,7 +240,8 @@ std::optional<ViewPartition> by_rate(const Sample& sample, const std::vector<std
       .views = {},
       .of_beam = {},
       .advice =
-          "its eta and lambda are probably in a wrong local minimum, in which errors of both cancel at one rate. Record longer and at more rates, or start from calibrate.load"};
+          "its eta and lambda are probably in a wrong local minimum, in which errors of both cancel at one rate. Record longer and at more rates, or start from calibrate.load",
+      .is_by_time = true};
   std::vector<double> rates;
   for (const double time : sample.beams.time) {
     const auto plate = sample.plate->at(time);
@@ -301,7 +303,8 @@ std::vector<ViewConsistency> view_consistency(const quality::Surfels& surfels,
                        .other = partition.views[pair % n],
                        .orientation = orientation,
                        .beams = all.beams[pair],
-                       .share = all.agreed[pair] / all.beams[pair]});
+                       .share = all.agreed[pair] / all.beams[pair],
+                       .is_by_time = partition.is_by_time});
     }
   }
   return pairs;

@@ -17,7 +17,8 @@ struct ViewPartition {
   std::vector<std::uint32_t> of_beam;  ///< index into `views` of each beam
   std::string advice;                  ///< cause of inconsistent views, and what to do; "{}" is the suspect
   std::vector<std::size_t> groups =
-      {};  ///< of each view, which is compared with others of its group; or empty
+      {};                   ///< of each view, which is compared with others of its group; or empty
+  bool is_by_time = false;  ///< whether views differ in time alone: a wrong mount affects all alike
 };
 
 /// The partitions that show a wrong calibration: by laser (if there are several), which a wrong λ, τ or α
@@ -47,7 +48,8 @@ struct ViewConsistency {
   std::string other;
   Orientation orientation = Orientation::upright;  ///< of the surfaces
   double beams = 0;                                ///< of `view` on them, where beams of `other` go as well
-  double share = 0;  ///< of these, on surfaces that `other` meets within 3 standard deviations
+  double share = 0;         ///< of these, on surfaces that `other` meets within 3 standard deviations
+  bool is_by_time = false;  ///< the partition's
 };
 
 /// All ordered pairs of a partition's views that have beams on such surfaces in the same directions, in the

@@ -28,14 +28,6 @@ Caveats of_misfit(const Refinement& refined, double noise) {
       misfit * 1e3, relative, misfit / relative * 1e3)};
 }
 
-/// Contradictions with the rig. The stage that gave a start outside of a range has already reported it.
-Caveats of_rig(const Calibration& calibration, const Calibration& start, const Rig& rig) {
-  const estimate::ParameterPrior range;
-  const RigCheck check = check_with_rig(calibration, rig, range);
-  const bool is_new = check.is_explained || check_with_rig(start, rig, range).caveats.empty();
-  return is_new ? check.caveats : far_from_nominal(calibration, rig);
-}
-
 Caveats of_rqe(const std::map<std::string, double>& quality, bool is_near_start) {
   constexpr double kLess = 0.05;  // [nat] that chance and the bias of an optimum of RQE do not explain
   const double after = quality.at("rqe_after");
@@ -102,7 +94,7 @@ std::vector<std::string> check_fit(const Refinement& refined, const Calibration&
                                    const Calibration& start, const Rig& rig, double noise) {
   Caveats caveats = refined.outcome.caveats;
   append(caveats, of_misfit(refined, noise));
-  append(caveats, of_rig(calibration, start, rig));
+  append(caveats, new_contradictions(calibration, start, rig));
   if (!agrees_well(refined)) append(caveats, of_rqe(calibration.quality, refined.restarts == 0));
   return caveats;
 }

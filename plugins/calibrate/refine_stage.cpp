@@ -27,6 +27,14 @@ namespace {
 using estimate::Refinement;
 using estimate::RefinementSettings;
 
+/// Whether the scene may be folded onto few flat surfaces, on which a wrong mount makes no views differ:
+/// neither different lasers nor the halves of a sweep see the same, as with one laser that sees one side.
+bool may_be_folded(const Refinement& refined, const estimate::Sample& sample) {
+  const auto beams = static_cast<double>(sample.beams.size());
+  return static_cast<double>(refined.beams) < kOrdinaryShare * beams &&
+         std::ranges::all_of(refined.views, &estimate::ViewConsistency::is_by_time);
+}
+
 /// Whether the refined values answer all caveats of the calibration that they started from.
 bool are_resolved(const std::vector<std::string>& caveats, const RigCheck& refined) {
   return std::ranges::all_of(caveats, [&](const std::string& caveat) {
@@ -141,7 +149,8 @@ void RefineStage::finish(Outputs& out, Context& context) {
 }
 
 std::vector<std::string> RefineStage::mistakes(const estimate::Sample& sample, const Refinement& refined,
-                                               Measure& measure, Context& context) const {
+                                               const RigCheck& check, Measure& measure,
+                                               Context& context) const {
   if (estimate::is_in_plane(sample)) return {};
   const HypothesisSettings settings{
       .terms = &context.run().registrar->get<TermRegistry>(),
@@ -150,12 +159,14 @@ std::vector<std::string> RefineStage::mistakes(const estimate::Sample& sample, c
       .interrupted = [&] { return context.interrupted(); },
       .report = [&](double done, std::string_view what) { context.progress(done, what); }};
   auto found = check_mounts(refined.outcome.model, sample, context.rig(), settings);
+  const bool contradicts_rig = !check.caveats.empty() && !check.is_explained;
+  const bool is_doubtful = !agrees_well(refined) || contradicts_rig || may_be_folded(refined, sample);
   const bool is_undetermined = !refined.outcome.caveats.empty();
-  if (!found.empty() || (agrees_well(refined) && !is_undetermined)) return found;
+  if (!found.empty() || (!is_doubtful && !is_undetermined)) return found;
   RigErrorSearch search(sample, context.rig(), settings);
   if (auto counts = search.counts()) return {std::move(*counts)};
   // In the part of a turn to which too large counts squeeze the scene, views agree with anything.
-  auto mistake = agrees_well(refined) ? search.factor_of_counts() : search.any();
+  auto mistake = is_doubtful ? search.any() : search.factor_of_counts();
   if (mistake) found.push_back(std::move(*mistake));
   return found;
 }
@@ -192,7 +203,8 @@ void RefineStage::judge(const estimate::Sample& sample, const Refinement& refine
   const auto of_silence = check_silence(sample.beams, context.rig());
   for (const auto& caveat : of_silence) context.mark_untrusted(caveat);
   const auto of_fit = check_fit(refined, calibration, *start_, context.rig(), noise);
-  const auto of_rig = mistakes(sample, refined, *measure, context);
+  const RigCheck check = check_with_rig(calibration, context.rig(), {});
+  const auto of_rig = mistakes(sample, refined, check, *measure, context);
   for (const auto& mistake : of_rig) context.mark_untrusted(mistake);
   // A known mistake explains the other caveats, which nobody needs to examine before it is corrected.
   for (const auto& caveat : of_fit) {
@@ -201,14 +213,14 @@ void RefineStage::judge(const estimate::Sample& sample, const Refinement& refine
     else
       context.print("probably for that reason: " + caveat);
   }
-  const RigCheck check = check_with_rig(calibration, context.rig(), {});
   note_direction(calibration, context.rig(), check);
   const bool was_open = std::ranges::count(start_->caveats, kDirectionIsOpen) > 0;
   if (!leaves_direction_open(context.rig(), check))
     report_direction(calibration, *start_, context);
   else if (!was_open)
     context.mark_untrusted(std::string(kDirectionIsOpen));
-  if (of_rig.empty() && of_fit.empty() && of_silence.empty() && are_resolved(start_->caveats, check)) {
+  const bool is_fine = of_rig.empty() && of_fit.empty() && of_silence.empty() && check.caveats.empty();
+  if (is_fine && are_resolved(start_->caveats, check)) {
     context.resolve_caveats(KindName<Calibration>::value,
                             "the refined calibration fits, and agrees with the rig");
   } else if (check.is_explained || !of_rig.empty()) {

@@ -15,6 +15,7 @@
 #include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/measurement_buffer.hpp"
 #include "pipeline/estimate/surfel_refinement.hpp"
+#include "plugins/calibrate/rig_check.hpp"
 
 namespace crisp::calibrate {
 
@@ -30,10 +31,10 @@ class RefineStage final : public Stage {
   void judge(const estimate::Sample& sample, const estimate::Refinement& refined, Calibration& calibration,
              Context& context) const;
 
-  /// Mistakes of the rig, as caveats: mounts always, the rest where the views do not agree
-  /// well, or the data determine little.
+  /// Mistakes of the rig, as caveats: mounts always, the rest where views disagree, the scene may be folded,
+  /// the rig is contradicted (`check`), or the data determine little.
   std::vector<std::string> mistakes(const estimate::Sample& sample, const estimate::Refinement& refined,
-                                    Measure& measure, Context& context) const;
+                                    const RigCheck& check, Measure& measure, Context& context) const;
 
   estimate::RefinementSettings settings_;
   double sigma_ = 0.02;  // [m] near the ranges' noise, where RQE itself is hardly biased

@@ -107,6 +107,8 @@ class Restart {
         has_many ? refined_from(start, estimate::thin_evenly(sample_, kFew, kSeed), settings) : std::nullopt;
     if (has_many && !few) return std::nullopt;
     auto again = refined_from(few ? few->outcome.model : start, sample_, settings);
+    // A wrong rig folds the scene onto few surfaces, on which views can agree.
+    if (again && again->beams < refined_.beams) return std::nullopt;
     if (again) {
       context_.print(fmt::format(
           "refined from {}, since the values of the stage before lead to a local minimum: views agree on at least {:.0f} % of their common flat surfaces there, and on {:.0f} % here",

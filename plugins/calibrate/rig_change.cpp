@@ -21,12 +21,6 @@ using data::kDegree;
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr std::array kTurns = {180 * kDegree, 90 * kDegree, -90 * kDegree, 45 * kDegree, -45 * kDegree};
 
-std::string mount_in_words(const RigLaser& laser, double turn) {
-  const double mount = std::remainder(laser.mount + turn, 2 * kHalfTurn);
-  return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", mount / kDegree, laser.name,
-                     laser.mount / kDegree);
-}
-
 PlateTrajectory turned_by(const PlateTrajectory& plate, double factor) {
   std::vector<double> angles;
   for (const double angle : plate.angles()) angles.push_back(factor * angle);
@@ -72,6 +66,11 @@ RigChange no_change(const Rig& rig) {
   return {.words = {}, .lasers = std::vector<LaserChange>(rig.lasers.size())};
 }
 
+std::string mount_in_words(const RigLaser& laser, double mount) {
+  const double shown = std::remainder(mount, 2 * kHalfTurn) / kDegree;
+  return fmt::format("mount: {:.4g}deg of {} (the rig has {:.4g})", shown, laser.name, laser.mount / kDegree);
+}
+
 RigChange other_direction(const Rig& rig) {
   const bool is_clockwise = rig.plate.direction == CountDirection::clockwise;
   RigChange change = no_change(rig);
@@ -91,7 +90,7 @@ std::vector<RigChange> changes_of_laser(const Rig& rig, std::size_t laser) {
   std::vector<RigChange> all = {std::move(upside_down)};
   for (const double turn : kTurns) {
     RigChange change = no_change(rig);
-    change.words = mount_in_words(own, turn);
+    change.words = mount_in_words(own, own.mount + turn);
     change.lasers[laser].mount_turn = turn;
     all.push_back(std::move(change));
   }
@@ -102,7 +101,7 @@ std::vector<RigChange> other_mounts(const Rig& rig) {
   std::vector<RigChange> all;
   for (const double turn : kTurns) {
     RigChange change = no_change(rig);
-    change.words = mount_in_words(rig.lasers[0], turn);
+    change.words = mount_in_words(rig.lasers[0], rig.lasers[0].mount + turn);
     if (rig.lasers.size() > 1) change.words += " and the mounts of the others turned alike";
     for (LaserChange& laser : change.lasers) laser.mount_turn = turn;
     all.push_back(std::move(change));

@@ -28,6 +28,9 @@ struct RigChange {
   std::optional<std::pair<std::size_t, std::size_t>> exchanged = std::nullopt;  ///< lasers, before all else
 };
 
+/// "mount: 87.1deg of laser1 (the rig has 90)".
+std::string mount_in_words(const RigLaser& laser, double mount);
+
 /// The rig as it stands.
 RigChange no_change(const Rig& rig);
 

@@ -71,32 +71,49 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
 }
 
 /// λ without a standard deviation, which is searched around the whole circle.
-void add_if_elsewhere(const LaserCalibration& found, const Parameter& nominal,
-                      std::vector<std::string>& caveats) {
+bool is_elsewhere(const Parameter& found, const Parameter& nominal) {
   constexpr double kFar = 45 * data::kDegree;  // three standard deviations of a rough value
+  const double off = std::abs(std::remainder(found.value - nominal.value, kFullTurn));
+  return nominal.std_error == 0 && off >= kFar + kReach * found.std_error;
+}
+
+std::string elsewhere(const LaserCalibration& found, const Parameter& nominal) {
   const double off = std::abs(std::remainder(found.lambda.value - nominal.value, kFullTurn));
-  if (nominal.std_error > 0 || off < kFar + kReach * found.lambda.std_error) return;
-  caveats.push_back(fmt::format(
+  return fmt::format(
       "{}.lambda is {:.1f} deg, {:.0f} deg from the rig's nominal {:.1f} deg: a laser has another's address, a nominal lambda is wrong, or the calibration is in a wrong local minimum. Check the addresses and each lambda in the rig, or give lambda an sd",
-      found.name, found.lambda.value / data::kDegree, off / data::kDegree, nominal.value / data::kDegree));
+      found.name, found.lambda.value / data::kDegree, off / data::kDegree, nominal.value / data::kDegree);
+}
+
+/// The limit where the rig has a standard deviation; else the range, which a start outside of it widens.
+Limit limit_from(const Parameter& start, const Parameter& nominal, double range) {
+  Limit limit = limit_of(nominal, range);
+  const double off = std::abs(start.value - nominal.value);
+  if (!limit.option.empty() && off > range) limit.size += off;
+  return limit;
 }
 
 /// Each parameter that is farther from its nominal value than the rig or the search allows.
-std::vector<std::string> outside(const Calibration& found, const Rig& rig,
+///
+/// @param start  values that may be outside as well, since a stage before has reported it: as far as they
+///               are, none is reported again, where the rig has no standard deviation
+std::vector<std::string> outside(const Calibration& found, const Calibration& start, const Rig& rig,
                                  const estimate::ParameterPrior& range) {
   std::vector<std::string> caveats = exchanged_by_tau(found, rig, range);
   for (std::size_t k = 0; k < found.lasers.size(); ++k) {
     const LaserCalibration& laser = found.lasers[k];
+    const LaserCalibration& before = start.lasers[k];
     const LaserCalibration& nominal = rig.lasers[k].nominal;
     const auto add = [&](const Parameter& value, const Parameter& expected, const Limit& limit) {
       add_if_outside(laser.name, value, expected, limit, caveats);
     };
     if (laser.lambda.free) {
       add(laser.lambda, nominal.lambda, limit_of(nominal.lambda, 0));
-      add_if_elsewhere(laser, nominal.lambda, caveats);
+      const bool is_new = !is_elsewhere(before.lambda, nominal.lambda);
+      if (is_new && is_elsewhere(laser.lambda, nominal.lambda))
+        caveats.push_back(elsewhere(laser, nominal.lambda));
     }
-    add(laser.tau, nominal.tau, limit_of(nominal.tau, range.tau));
-    add(laser.alpha, nominal.alpha, limit_of(nominal.alpha, range.alpha));
+    add(laser.tau, nominal.tau, limit_from(before.tau, nominal.tau, range.tau));
+    add(laser.alpha, nominal.alpha, limit_from(before.alpha, nominal.alpha, range.alpha));
     if (laser.eta.free) add(laser.eta, nominal.eta, limit_of(nominal.eta, 0));
   }
   return caveats;
@@ -168,8 +185,11 @@ std::vector<std::string> known_from_rig_only(const Calibration& calibration,
   return names;
 }
 
-std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig) {
-  return outside(calibration, rig, {.tau = 0, .alpha = 0});
+std::vector<std::string> new_contradictions(const Calibration& calibration, const Calibration& start,
+                                            const Rig& rig) {
+  const estimate::ParameterPrior range;
+  const RigCheck check = check_with_rig(calibration, rig, range);
+  return check.is_explained ? check.caveats : outside(calibration, start, rig, range);
 }
 
 RigCheck check_with_rig(const Calibration& calibration, const Rig& rig,
@@ -191,7 +211,7 @@ RigCheck check_with_rig(const Calibration& calibration, const Rig& rig,
                  .is_explained = is_explained,
                  .knows_direction = as_it_is + kClearly < mirror_image.sum()};
   if (!is_explained) {
-    check.caveats = outside(calibration, rig, range);
+    check.caveats = outside(calibration, nominal_calibration(rig), rig, range);
     return check;
   }
   std::vector<RigMistake> alternatives = {best};

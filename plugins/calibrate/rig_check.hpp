@@ -73,7 +73,10 @@ bool leaves_direction_open(const Rig& rig, const RigCheck& check);
 std::vector<std::string> known_from_rig_only(const Calibration& calibration,
                                              const estimate::ParameterPrior& prior);
 
-/// Caveats for parameters that are more than three of the rig's standard deviations from their nominal value.
-std::vector<std::string> far_from_nominal(const Calibration& calibration, const Rig& rig);
+/// The caveats of check_with_rig() for a refined calibration, without those that its start has had: a τ, an α
+/// or a λ that the rig gives without a standard deviation may be as far from its nominal value as the
+/// start's.
+std::vector<std::string> new_contradictions(const Calibration& calibration, const Calibration& start,
+                                            const Rig& rig);
 
 }  // namespace crisp::calibrate

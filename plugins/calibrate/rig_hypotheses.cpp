@@ -27,7 +27,8 @@ using estimate::Sample;
 constexpr std::size_t kBeams = 100'000;    // enough to see whether they fit
 constexpr std::size_t kOwnBeams = 15'000;  // of one laser, where all together are tried afterwards
 constexpr double kMore = 1.15;  // of the beams on flat surfaces, where the unchanged rig fits as well
-constexpr double kSteps = 20;   // about as many changes as are tried
+constexpr double kSomeMore = 1.1, kMuchLessRest = 0.5;  // and the same with beams that lie on none
+constexpr double kSteps = 20;                           // about as many changes as are tried
 constexpr const char* kMirrorZero = "mount.mirror_zero";
 
 /// "0.000" and not "-0.000".
@@ -58,6 +59,54 @@ std::optional<estimate::Refinement> refined_with_mounts(const SensorModel& model
   }
 }
 
+/// A mount that is off by little.
+struct MountError {
+  std::size_t laser = 0;
+  double mount = 0;      ///< [rad] that fits
+  double std_error = 0;  ///< [rad]
+};
+
+/// Where `mount.mirror_zero` is clearly not 0 once it is free.
+std::vector<MountError> mount_errors(const estimate::Refinement& refined, const Rig& rig) {
+  constexpr double kMin = 0.1 * data::kDegree;  // 2 mm a metre
+  constexpr double kClearly = 5;                // standard errors
+  const Calibration found = estimate::calibration_of(refined.outcome, rig);
+  std::vector<MountError> errors;
+  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
+    for (const TermParameters& term : found.lasers[laser].terms) {
+      if (term.term != kMirrorZero || term.parameters.empty()) continue;
+      const Parameter& zero = term.parameters.front();
+      if (!zero.free || std::abs(zero.value) < std::max(kMin, kClearly * zero.std_error)) continue;
+      errors.push_back(
+          {.laser = laser, .mount = rig.lasers[laser].mount - zero.value, .std_error = zero.std_error});
+    }
+  }
+  return errors;
+}
+
+/// "mount: 87.1deg of laser1 (the rig has 90)", of lasers that the change leaves as they are.
+std::vector<std::string> mounts_in_words(const std::vector<MountError>& errors, const Rig& rig,
+                                         const RigChange& change) {
+  std::vector<std::string> words;
+  for (const MountError& error : errors) {
+    if (change.exchanged || change.lasers[error.laser] != LaserChange{}) continue;
+    words.push_back(mount_in_words(rig.lasers[error.laser], error.mount));
+  }
+  return words;
+}
+
+/// Changes with about as many beams on flat surfaces as the best one has.
+std::vector<RigChange> nearly_best(std::vector<RigChange> changes, const std::vector<double>& beams) {
+  constexpr double kNearly = 0.95;
+  if (changes.empty()) return {};
+  const double most = std::ranges::max(beams);
+  std::vector<RigChange> best;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    if (beams[k] > kNearly * most) best.push_back(std::move(changes[k]));
+  }
+  return best;
+}
+
 /// Nothing if no change fits.
 std::optional<std::string> caveat_of(const std::vector<RigChange>& fitting) {
   if (fitting.empty()) return std::nullopt;
@@ -74,29 +123,30 @@ std::optional<std::string> caveat_of(const std::vector<RigChange>& fitting) {
 
 std::vector<std::string> check_mounts(const SensorModel& model, const Sample& sample, const Rig& rig,
                                       const HypothesisSettings& settings) {
-  constexpr double kMin = 0.1 * data::kDegree;  // 2 mm a metre
-  constexpr double kClearly = 5;                // standard errors
-  std::vector<std::string> caveats;
   const Sample some = estimate::thin_evenly(sample, kBeams, 1);
   if (mount_terms(some, rig).empty()) return {};
   const auto refined = refined_with_mounts(model, some, rig, settings);
   if (settings.interrupted() || !refined || !refined->outcome.caveats.empty()) return {};
-  const Calibration found = estimate::calibration_of(refined->outcome, rig);
   const Calibration given = model.calibration();
-  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
-    if (std::ranges::count(given.lasers[laser].terms, kMirrorZero, &TermParameters::term) > 0) continue;
-    for (const TermParameters& term : found.lasers[laser].terms) {
-      if (term.term != kMirrorZero || term.parameters.empty()) continue;
-      const Parameter& zero = term.parameters.front();
-      if (!zero.free || std::abs(zero.value) < std::max(kMin, kClearly * zero.std_error)) continue;
-      const RigLaser& own = rig.lasers[laser];
-      caveats.push_back(fmt::format(
-          "{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the rig, or estimate it with calibrate.refine's terms: [{}]",
-          own.name, without_sign_of_zero((own.mount - zero.value) / data::kDegree),
-          zero.std_error / data::kDegree, own.mount / data::kDegree, kMirrorZero));
-    }
+  std::vector<std::string> caveats;
+  for (const MountError& error : mount_errors(*refined, rig)) {
+    if (std::ranges::count(given.lasers[error.laser].terms, kMirrorZero, &TermParameters::term) > 0) continue;
+    const RigLaser& own = rig.lasers[error.laser];
+    caveats.push_back(fmt::format(
+        "{}'s mount is off: {:.3f} ± {:.3f} deg fits, the rig has {:.3f} deg. Set mount in the rig, or estimate it with calibrate.refine's terms: [{}]",
+        own.name, without_sign_of_zero(error.mount / data::kDegree), error.std_error / data::kDegree,
+        own.mount / data::kDegree, kMirrorZero));
   }
   return caveats;
+}
+
+bool RigErrorSearch::Fit::explains_all() const { return fits && kSomeMore * beams > all_beams; }
+
+bool RigErrorSearch::Fit::explains_more_than(const Fit& other) const {
+  if (!fits || !other.fits) return fits && beams > other.beams;
+  if (beams < kOrdinaryShare * all_beams) return false;
+  const bool leaves_much_less = all_beams - beams < kMuchLessRest * (other.all_beams - other.beams);
+  return beams > kMore * other.beams || (beams > kSomeMore * other.beams && leaves_much_less);
 }
 
 RigErrorSearch::RigErrorSearch(const Sample& sample, const Rig& rig, HypothesisSettings settings)
@@ -120,12 +170,16 @@ RigErrorSearch::Fit RigErrorSearch::fit_with(const RigChange& change, const Samp
     if (settings.interrupted()) return {};
     const auto refined = refined_with_mounts(crisp.model, changed.sample(), rig_, settings);
     if (!refined) return {};
-    Fit fit{.beams = refined->beams};
-    if (!refined->outcome.caveats.empty() || !agrees_well(*refined)) return fit;
+    Fit fit{.beams = static_cast<double>(refined->beams),
+            .all_beams = static_cast<double>(sample.beams.size())};
+    // Few determined parameters, as at a constant rate, show nothing against the change.
+    const std::size_t harmless = refined->determines_little ? 1 : 0;
+    if (refined->outcome.caveats.size() > harmless || !agrees_well(*refined)) return fit;
     const RigCheck check =
         check_with_rig(estimate::calibration_of(refined->outcome, rig_), rig_, estimate::ParameterPrior{});
     fit.fits = check.caveats.empty();
     if (check.is_explained) fit.mistake = check.caveats.front();
+    fit.mounts = mounts_in_words(mount_errors(*refined, rig_), rig_, change);
     return fit;
   } catch (const Error&) {
     return {};  // RQE refuses the data with that
@@ -149,26 +203,28 @@ std::optional<std::string> RigErrorSearch::counts() {
   RigChange change = no_change(rig_);
   change.turn = 1 / turns;
   const Fit changed = fit_with(change, sample_);
-  const bool is_better =
-      changed.fits && static_cast<double>(changed.beams) > kMore * static_cast<double>(unchanged.beams);
-  if (!is_better) return std::nullopt;
+  if (!changed.explains_more_than(unchanged) || changed.beams <= kMore * unchanged.beams) return std::nullopt;
   return estimate::counts_caveat(*period_);
 }
 
-bool RigErrorSearch::fits_with(const RigChange& change, const Sample& sample, const Fit& unchanged) {
-  if (settings_.interrupted()) return false;
+std::optional<RigErrorSearch::Fit> RigErrorSearch::better_fit(const RigChange& change, const Sample& sample,
+                                                              const Fit& unchanged) {
+  if (settings_.interrupted()) return std::nullopt;
   if (settings_.report)
     settings_.report(std::min(0.99, static_cast<double>(step_++) / kSteps), "what if " + change.words);
-  const Fit changed = fit_with(change, sample);
-  const double times = unchanged.fits ? kMore : 1;
-  return changed.fits && static_cast<double>(changed.beams) > times * static_cast<double>(unchanged.beams);
+  Fit changed = fit_with(change, sample);
+  if (!changed.explains_more_than(unchanged)) return std::nullopt;
+  return changed;
 }
 
 std::vector<RigChange> RigErrorSearch::those_that_fit(const std::vector<RigChange>& changes) {
   std::vector<RigChange> fitting;
   for (const RigChange& change : changes) {
-    const bool is_of_interest = fitting.empty() || are_alike(fitting.front(), change);
-    if (is_of_interest && fits_with(change, sample_, fit_of_rig())) fitting.push_back(change);
+    if (!fitting.empty() && !are_alike(fitting.front(), change)) continue;
+    const auto fit = better_fit(change, sample_, fit_of_rig());
+    if (!fit) continue;
+    fitting.push_back(change);
+    for (const auto& mount : fit->mounts) fitting.back().words += ", and " + mount;
   }
   return fitting;
 }
@@ -177,10 +233,16 @@ std::vector<RigChange> RigErrorSearch::of_one(std::size_t laser) {
   const Sample own = estimate::thin_evenly(estimate::of_laser(sample_, laser), kOwnBeams, 1);
   if (own.beams.size() == 0) return {};
   const Fit unchanged = fit_with(no_change(rig_), own);
-  if (unchanged.fits) return {};
-  auto changes = changes_of_laser(rig_, laser);
-  std::erase_if(changes, [&](const RigChange& change) { return !fits_with(change, own, unchanged); });
-  return changes;
+  if (unchanged.explains_all()) return {};
+  std::vector<RigChange> better;
+  std::vector<double> beams;
+  for (RigChange& change : changes_of_laser(rig_, laser)) {
+    const auto fit = better_fit(change, own, unchanged);
+    if (!fit) continue;
+    better.push_back(std::move(change));
+    beams.push_back(fit->beams);
+  }
+  return nearly_best(std::move(better), beams);
 }
 
 std::vector<RigChange> RigErrorSearch::of_some() {
@@ -213,8 +275,11 @@ std::optional<std::string> RigErrorSearch::any() {
   if (!fit_of_rig().mistake.empty()) return fit_of_rig().mistake;
   // A scene that wrong counts have squeezed can fit as well, by fewer beams.
   std::vector<RigChange> found = of_plate();
-  // Where the rig as it stands fits, by the same few beams, no change of a laser explains anything.
-  if (found.empty() && fit_of_rig().fits) return std::nullopt;
+  if (found.empty() && fit_of_rig().fits && !fit_of_rig().mounts.empty()) {
+    found.push_back(no_change(rig_));
+    found.back().words = fmt::format("{}", fmt::join(fit_of_rig().mounts, " and "));
+  }
+  if (found.empty() && fit_of_rig().explains_all()) return std::nullopt;
   if (found.empty()) found = of_some();  // a tenth of the time that all lasers together take
   if (found.empty()) found = of_all();
   return caveat_of(found);

@@ -16,6 +16,10 @@
 
 namespace crisp::calibrate {
 
+/// Share of the beams that lie on flat surfaces in rooms, halls and streets at least (0.89 to 0.99 in nearly
+/// all).
+inline constexpr double kOrdinaryShare = 0.65;
+
 /// Settings for calibrating again under another assumption on the rig.
 struct HypothesisSettings {
   const TermRegistry* terms = nullptr;
@@ -58,15 +62,24 @@ class RigErrorSearch {
  private:
   /// How well the data fit with a change.
   struct Fit {
-    bool fits = false;      ///< without a caveat, and in agreement with the nominal values
-    std::size_t beams = 0;  ///< on flat surfaces: a wrong rig may fold the scene onto a few of them
-    std::string mistake;    ///< the mistake in the nominal values that it shows, as a caveat
+    bool fits = false;                ///< without a caveat, and in agreement with the nominal values
+    double beams = 0;                 ///< on flat surfaces: a wrong rig may fold the scene onto a few of them
+    double all_beams = 0;             ///< of the sample
+    std::string mistake;              ///< the mistake in the nominal values that it shows, as a caveat
+    std::vector<std::string> mounts;  ///< of unchanged lasers that are off by little, in words
+
+    /// Whether no other fit can explain clearly more.
+    bool explains_all() const;
+    /// Whether it fits, with more beams on flat surfaces; if the other fits as well, clearly more, and as
+    /// many as in ordinary scenes.
+    bool explains_more_than(const Fit& other) const;
   };
 
   Fit fit_with(const RigChange& change, const estimate::Sample& sample) const;
   const Fit& fit_of_rig();
-  /// Whether the data fit, with more beams than without the change.
-  bool fits_with(const RigChange& change, const estimate::Sample& sample, const Fit& unchanged);
+  /// The fit with a change, if it explains more than that without.
+  std::optional<Fit> better_fit(const RigChange& change, const estimate::Sample& sample,
+                                const Fit& unchanged);
   /// The first change with which all data fit, and those like it.
   std::vector<RigChange> those_that_fit(const std::vector<RigChange>& changes);
   /// Changes of the plate.

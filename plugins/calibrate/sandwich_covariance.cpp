@@ -19,9 +19,12 @@ class Gradient {
            const Eigen::MatrixXd& basis)
       : model_(model), free_(free), measure_(measure), scale_(scale), basis_(basis) {}
 
+  SensorModel moved(const Eigen::VectorXd& step) const {
+    return estimate::with(model_, free_, estimate::picked(model_, free_) + basis_ * step);
+  }
+
   Eigen::VectorXd at(const Eigen::VectorXd& step, const Sample& sample) {
-    const SensorModel moved = estimate::with(model_, free_, estimate::picked(model_, free_) + basis_ * step);
-    return basis_.transpose() * model_quality(moved, sample, free_, measure_, scale_).gradient;
+    return basis_.transpose() * model_quality(moved(step), sample, free_, measure_, scale_).gradient;
   }
 
  private:
@@ -32,8 +35,19 @@ class Gradient {
   const Eigen::MatrixXd& basis_;
 };
 
+constexpr double kStep = 0.1;  // of the scale, in the points' motion
+
+/// The beams that encoder readings cover after each step, also where an η is near the end of its range.
+Sample placeable_after_steps(const Gradient& gradient, Eigen::Index m, const Sample& sample) {
+  Sample placed = sample;
+  for (Eigen::Index k = 0; k < m; ++k) {
+    for (const double step : {kStep, -kStep})
+      placed = estimate::placeable(gradient.moved(step * Eigen::VectorXd::Unit(m, k)), placed);
+  }
+  return placed;
+}
+
 Eigen::MatrixXd hessian(Gradient& gradient, Eigen::Index m, const Sample& sample) {
-  constexpr double kStep = 0.1;  // of the scale, in the points' motion
   Eigen::MatrixXd result(m, m);
   for (Eigen::Index k = 0; k < m; ++k) {
     const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(m, k);
@@ -67,21 +81,36 @@ Eigen::MatrixXd gradient_covariance(Gradient& gradient, Eigen::Index m, const Sa
 
 }  // namespace
 
+Eigen::MatrixXd sandwich(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& spread,
+                         const Eigen::MatrixXd& basis, const Eigen::VectorXd& ranges) {
+  constexpr double kBeyond = 10;  // times the range: clearly not determined
+  const statistics::SymmetricEigen curvature = statistics::eigendecomposition(hessian);
+  const double flat = 1e-9 * std::max(1e-300, curvature.values.cwiseAbs().maxCoeff());
+  const auto has_minimum = (curvature.values.array() > flat).eval();
+  const Eigen::VectorXd inverse = has_minimum.select(curvature.values.cwiseInverse(), 0);
+  const Eigen::MatrixXd influence = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose();
+  Eigen::MatrixXd scatter = basis * influence * spread * influence * basis.transpose();
+  for (Eigen::Index k = 0; k < hessian.rows(); ++k) {
+    if (has_minimum[k]) continue;
+    const Eigen::VectorXd direction = basis * curvature.vectors.col(k);
+    const double reach = kBeyond / direction.cwiseQuotient(ranges).norm();
+    scatter += reach * reach * direction * direction.transpose();
+  }
+  return (scatter + scatter.transpose()) / 2;
+}
+
 Eigen::MatrixXd sandwich_covariance(const SensorModel& model, const Sample& sample,
                                     const std::vector<std::size_t>& free, Measure& measure,
                                     const SandwichSettings& settings) {
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd basis = search_basis(model, sample, free, settings.range, settings.scale);
+  const Eigen::VectorXd ranges = estimate::ranges_of(settings.range, model, free);
   Gradient gradient(model, free, measure, settings.scale, basis);
-  const statistics::SymmetricEigen curvature = statistics::eigendecomposition(hessian(gradient, m, sample));
-  // A flat measure, or no minimum, determines nothing: an error far beyond the range.
-  const double flat = 1e-9 * std::max(1e-300, curvature.values.cwiseAbs().maxCoeff());
-  const Eigen::VectorXd inverse = curvature.values.cwiseMax(flat).cwiseInverse();
-  const Eigen::MatrixXd influence = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose();
-  const Eigen::MatrixXd spread = gradient_covariance(gradient, m, sample, settings);
-  const Eigen::MatrixXd scatter = basis * influence * spread * influence * basis.transpose();
-  const Eigen::VectorXd least = 1e-12 * estimate::ranges_of(settings.range, model, free).cwiseAbs2();
-  return (scatter + scatter.transpose()) / 2 + Eigen::MatrixXd(least.asDiagonal());
+  const Sample placed = placeable_after_steps(gradient, m, sample);
+  const Eigen::MatrixXd scatter = sandwich(hessian(gradient, m, placed),
+                                           gradient_covariance(gradient, m, placed, settings), basis, ranges);
+  const Eigen::VectorXd least = 1e-12 * ranges.cwiseAbs2();
+  return scatter + Eigen::MatrixXd(least.asDiagonal());
 }
 
 }  // namespace crisp::calibrate

@@ -17,9 +17,20 @@ struct SandwichSettings {
   estimate::ParameterPrior range;  ///< a parameter's standard error is at most of this size
 };
 
+/// H⁻¹ B H⁻¹ in the directions in which a measure has a minimum. Others have a standard error of ten times
+/// their range, so that they are not observable, and leave the rest as it is.
+///
+/// @param hessian  m × m, H in the coordinates of the basis
+/// @param spread   m × m, B in these coordinates
+/// @param basis    m × m, of the parameters' directions
+/// @param ranges   m, of the parameters
+/// @return m × m, of the parameters
+Eigen::MatrixXd sandwich(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& spread,
+                         const Eigen::MatrixXd& basis, const Eigen::VectorXd& ranges);
+
 /// Sandwich covariance of a measure's optimum under the noise of the ranges: H⁻¹ B H⁻¹, where H is the
 /// measure's Hessian and B the covariance of its gradient (Huber 1967). H is computed from differences of the
-/// gradient, B from gradients after random changes of all ranges.
+/// gradient, B from gradients after random changes of all ranges; see sandwich().
 ///
 /// @param model  at the optimum
 /// @return m × m, positive definite, in the order of `free`

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "pipeline/data/degree.hpp"
 #include "plugins/clock/hub_timings.hpp"
 
 namespace crisp {
@@ -30,6 +32,29 @@ void warn_of_steps(const std::string& device, const char* what, const std::vecto
   warnings.push_back(fmt::format("{}: {} {} time(s), by {:+.3f} ms at {:.2f} s{}; corrected", device, what,
                                  steps.size(), 1e3 * largest.by, largest.at,
                                  steps.size() > 1 ? ", and less elsewhere" : ""));
+}
+
+using CountJump = clock::EncoderTimestamper::CountJump;
+
+bool is_by_whole_turns(const CountJump& jump) {
+  constexpr double kRounding = 1e-9;  // [rad]
+  return std::abs(std::remainder(jump.angle, 2 * std::numbers::pi)) < kRounding;
+}
+
+void warn_of_count_jumps(const std::string& plate, std::vector<CountJump> jumps,
+                         std::vector<std::string>& warnings) {
+  const std::size_t by_turns = std::erase_if(jumps, is_by_whole_turns);
+  if (by_turns > 0)
+    warnings.push_back(fmt::format(
+        "{}: its count begins anew after whole turns ({} time(s)), as at an index pulse; later counts are continued from before",
+        plate, by_turns));
+  if (jumps.empty()) return;
+  const auto& largest =
+      *std::ranges::max_element(jumps, {}, [](const CountJump& jump) { return std::abs(jump.angle); });
+  warnings.push_back(fmt::format(
+      "{}: its count jumped {} time(s), by {:+.2f} deg at {:.2f} s{}, faster than a plate can turn; corrected, as if the plate had turned on as before. Check whether the encoder slips or loses counts",
+      plate, jumps.size(), largest.angle / data::kDegree, largest.time,
+      jumps.size() > 1 ? ", and less elsewhere" : ""));
 }
 
 void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {
@@ -168,6 +193,7 @@ AlignmentReport HubTimings::report() const {
   report.counts[plate + ": readings at one hub time"] = plate_.simultaneous();
   report.counts["scans of lasers that the rig does not have"] = unknown_lasers_;
   report.counts["telegrams received before their predecessor"] = back_in_time_;
+  warn_of_count_jumps(plate, plate_.count_jumps(), report.warnings);
   if (plate_.after_lost_zero() > 0) {
     report.warnings.push_back(fmt::format(
         "{}: the encoder lost its zero; later readings have an unknown offset and are left out", plate));

@@ -16,6 +16,7 @@ namespace {
 constexpr double kFastestChange = 100;  // [turns/s²] no plate spins up faster
 constexpr double kSlack = 0.01;         // [turns] what times and counts may be off otherwise
 constexpr std::uint64_t kMinConsecutiveJumps = 5;
+constexpr double kLongestBlind = 0.05;  // [s] in which a plate goes on as before, within kSlack
 constexpr std::ptrdiff_t kMarginReadings =
     2;  // readings beyond the requested ones, so that its ends are as smooth
 
@@ -55,7 +56,7 @@ bool EncoderTimestamper::add(const PlateReading& reading, double hub) {
                      reading.receipt_ns, hub, reading.handover_us);
   if (arrival.kind == clocks::StampKind::repeated) return false;
   if (arrival.kind == clocks::StampKind::reset) {
-    before_reset_ = {.last = last_, .zero_is_lost = zero_is_lost_};
+    before_reset_ = {.last = last_, .ahead = ahead_, .zero_is_lost = zero_is_lost_};
     zero_is_lost_ = zero_is_lost_ || has_lost_zero(reading, receipt);
   }
   if (arrival.kind == clocks::StampKind::returned) undo_reset();
@@ -70,8 +71,9 @@ bool EncoderTimestamper::add(const PlateReading& reading, double hub) {
   Reading next{.device = 1e-6 * static_cast<double>(arrival.device_us - std::int64_t{reading.handover_us}),
                .receipt = receipt,
                .count = static_cast<std::int32_t>(reading.count)};
-  if (taken_ > 0) next.count = last_.count + counted(static_cast<std::uint32_t>(last_.count), reading.count);
-  if (taken_ > 0 && has_jumped(last_, next)) {
+  if (taken_ > 0)
+    next.count = last_.count + counted(static_cast<std::uint32_t>(last_.count + ahead_), reading.count);
+  if (taken_ > 0 && (has_jumped(last_, next) || goes_on_from_jump(next))) {
     ++impossible_;
     classify_jump(next);
   } else {
@@ -85,7 +87,7 @@ void EncoderTimestamper::take(const Reading& next) {
     interval_ = std::max(next.device - last_.device, 1e-6);
     rate_ = static_cast<double>(next.count - last_.count) / interval_;
   }
-  jumps_ = 0;
+  jumped_.clear();
   ++taken_;
   last_ = next;
   readings_.push_back(next);
@@ -93,35 +95,77 @@ void EncoderTimestamper::take(const Reading& next) {
 
 void EncoderTimestamper::classify_jump(const Reading& next) {
   // One such reading is damaged; several that go on from one another are right, and either the first of all
-  // readings were damaged, or the encoder has a new zero.
-  jumps_ = jumps_ > 0 && !has_jumped(jumped_, next) ? jumps_ + 1 : 1;
-  jumped_ = next;
-  if (jumps_ < kMinConsecutiveJumps) return;
+  // readings were damaged, or the count has jumped.
+  if (!jumped_.empty() && has_jumped(jumped_.back(), next)) jumped_.clear();
+  jumped_.push_back(next);
+  if (jumped_.size() < kMinConsecutiveJumps) return;
   if (taken_ < kMinConsecutiveJumps) {
     readings_.clear();
     taken_ = 0;
     take(next);
+  } else if (jumped_.front().device - last_.device < kLongestBlind) {
+    continue_after_jump();
   } else {
     zero_is_lost_ = true;
   }
 }
 
+void EncoderTimestamper::continue_after_jump() {
+  constexpr double kByChance = 2;  // [counts] that the plate may differ from its mean rate
+  const std::vector<Reading> jumped = std::exchange(jumped_, {});
+  const auto counts = [](const Reading& from, const Reading& to) {
+    return static_cast<double>(to.count - from.count);
+  };
+  const double rate_after =
+      counts(jumped.front(), jumped.back()) / (jumped.back().device - jumped.front().device);
+  const double gone = 0.5 * (rate_ + rate_after) * (jumped.front().device - last_.device);
+  double jump = std::round(counts(last_, jumped.front()) - gone);
+  // An encoder that counts anew at its index pulse.
+  const double of_turns = counts_per_revolution_ * std::round(jump / counts_per_revolution_);
+  if (of_turns != 0 && std::abs(jump - of_turns) <= kByChance) jump = std::round(of_turns);
+  const auto ahead = static_cast<std::int64_t>(jump);
+  count_jumps_.push_back({.at = jumped.front(), .counts = ahead});
+  ahead_ += ahead;
+  impossible_ -= jumped.size();
+  for (Reading reading : jumped) {
+    reading.count -= ahead;
+    take(reading);
+  }
+}
+
+std::vector<EncoderTimestamper::CountJump> EncoderTimestamper::count_jumps() const {
+  std::vector<CountJump> jumps;
+  if (!stamps_.map()) return jumps;
+  for (const Jump& jump : count_jumps_)
+    jumps.push_back({.time = time(jump.at), .angle = static_cast<double>(jump.counts) * angle_per_count_});
+  return jumps;
+}
+
+double EncoderTimestamper::deviation(const Reading& from, const Reading& to) const {
+  return std::abs(static_cast<double>(to.count - from.count) - rate_ * (to.device - from.device));
+}
+
 bool EncoderTimestamper::has_jumped(const Reading& from, const Reading& to) const {
   const double elapsed = to.device - from.device;
-  const double deviation = std::abs(static_cast<double>(to.count - from.count) - rate_ * elapsed);
   const double of_whole_counts = 2 * (1 + elapsed / interval_);  // a coarse encoder shows its rate coarsely
-  return deviation > counts_per_revolution_ * (kSlack + kFastestChange * elapsed * elapsed) + of_whole_counts;
+  return deviation(from, to) >
+         counts_per_revolution_ * (kSlack + kFastestChange * elapsed * elapsed) + of_whole_counts;
+}
+
+bool EncoderTimestamper::goes_on_from_jump(const Reading& next) const {
+  return !jumped_.empty() && deviation(jumped_.back(), next) < deviation(last_, next);
 }
 
 void EncoderTimestamper::undo_reset() {
   if (zero_is_lost_ && !before_reset_.zero_is_lost) --after_lost_zero_;
   zero_is_lost_ = before_reset_.zero_is_lost;
+  ahead_ = before_reset_.ahead;
   last_ = before_reset_.last;
   while (!readings_.empty() && readings_.back().device > last_.device) readings_.pop_back();
 }
 
 bool EncoderTimestamper::has_lost_zero(const PlateReading& reading, double receipt) const {
-  const double change = counted(static_cast<std::uint32_t>(last_.count), reading.count);
+  const double change = counted(static_cast<std::uint32_t>(last_.count + ahead_), reading.count);
   const double residual_if_continued = std::abs(change - rate_ * (receipt - last_.receipt));
   const double residual_if_restarted = std::abs(counted(0, reading.count) - rate_ * 1e-6 * reading.device_us);
   return residual_if_restarted < residual_if_continued;

@@ -41,6 +41,12 @@ class EncoderTimestamper {
   const WindowedClockFit& clock() const { return stamps_.clock(); }
   /// With the silences before its first and after its last reading [s since the epoch].
   DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
+  /// A jump of the count that no motion of the plate explains; later counts are continued from before it.
+  struct CountJump {
+    double time = 0;   ///< [s since the epoch]
+    double angle = 0;  ///< [rad] by which the count was ahead of the plate from then on
+  };
+  std::vector<CountJump> count_jumps() const;
   /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
   std::uint64_t after_lost_zero() const { return after_lost_zero_; }
   /// Readings whose angle the plate cannot have reached since the one before them.
@@ -56,13 +62,23 @@ class EncoderTimestamper {
   };
   struct Before {
     Reading last;
+    std::int64_t ahead = 0;
     bool zero_is_lost = false;
+  };
+  struct Jump {
+    Reading at;
+    std::int64_t counts = 0;
   };
   double time(const Reading& reading) const;
   void undo_reset();
   void take(const Reading& next);
   void classify_jump(const Reading& next);
+  void continue_after_jump();
+  /// [counts] Of the second from where the plate would be at the last rate.
+  double deviation(const Reading& from, const Reading& to) const;
   bool has_jumped(const Reading& from, const Reading& to) const;
+  /// Whether a reading that the plate may have reached by now is where it would be after the last jump.
+  bool goes_on_from_jump(const Reading& next) const;
   bool has_lost_zero(const PlateReading& reading, double receipt) const;
   static bool is_continuous(const clocks::DeviceStamp& from, const PlateReading& reading);
 
@@ -80,8 +96,9 @@ class EncoderTimestamper {
   std::optional<clocks::DeviceStamp> latest_;
   std::optional<clocks::DeviceStamp> before_;  ///< of another recording, until there is a first reading
   bool zero_is_new_ = false;                   ///< and no piece has reported it
-  Reading jumped_;
-  std::uint64_t jumps_ = 0;  ///< in a row, each from the place of the one before it
+  std::int64_t ahead_ = 0;                     ///< [counts] of the encoder's readings, by jumps
+  std::vector<Reading> jumped_;                ///< in a row, each from the place of the one before it
+  std::vector<Jump> count_jumps_;
   std::uint64_t impossible_ = 0;
   std::uint64_t after_lost_zero_ = 0;
   std::uint64_t simultaneous_ = 0;

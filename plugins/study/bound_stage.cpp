@@ -48,6 +48,19 @@ nlohmann::json planes_json(const SceneBound& bound, const simulate::Scene& scene
   return json;
 }
 
+/// Lasers that the rig has on the spin axis, moved off it, with their names. At τ = 0 alone λ and α are one
+/// parameter, and no mounting is as exact.
+std::vector<std::string> moved_off_the_axis(Calibration& truth) {
+  constexpr double kOff = 0.003;  // [m]
+  std::vector<std::string> names;
+  for (LaserCalibration& laser : truth.lasers) {
+    if (std::abs(laser.tau.value) >= kOff) continue;
+    laser.tau.value = std::copysign(kOff, laser.tau.value);
+    names.push_back(laser.name);
+  }
+  return names;
+}
+
 }  // namespace
 
 void BoundStage::describe(StageDescription<BoundStage>& d) {
@@ -55,7 +68,7 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
   d.details(
       "The Cramer-Rao bound: the least standard errors of any unbiased calibration from such a recording. It is computed from the beams that the scanner would fire at the scene, with every surface of the scene as unknown as the parameters, three numbers each, and projected out. Parameters that the motion or the scene leave undetermined are named, with the combination that is determined: at constant speed each eta against the lambdas.\n\n"
       "For comparison, `refine` adds the standard errors that calibrate.refine estimates on one such recording with noise.\n\n"
-      "The scanner has the rig's nominal values, or those of `calibration`. The plate's encoder and the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. A second bound counts the steps of the rig's encoder as well, as normal noise of the plate's angle.\n\n"
+      "The scanner has the rig's nominal values, or those of `calibration`; a laser nearer than 3 mm to the spin axis, where lambda and alpha merge, counts as 3 mm from it. The plate's encoder and the clocks count as exact, and the effects of the model beyond lambda, tau, alpha and eta as known. A second bound counts the steps of the rig's encoder as well, as normal noise of the plate's angle.\n\n"
       "A parameter counts as determined against the prior of calibrate.refine: lambda and alpha to 0.05 rad, tau to 3 cm, eta to 10 ms.");
   describe_planned(d, &BoundStage::planned_);
   d.option("beams", &BoundStage::beams_,
@@ -69,7 +82,11 @@ void BoundStage::describe(StageDescription<BoundStage>& d) {
 void BoundStage::check(const RunSettings& run) const { planned_.check(run); }
 
 void BoundStage::process(const Inputs&, Outputs&, Context& context) {
-  const PlannedRecording::Prepared planned = planned_.prepared(context);
+  PlannedRecording::Prepared planned = planned_.prepared(context);
+  if (planned_.truth.calibration_file.empty()) {
+    for (const auto& name : moved_off_the_axis(planned.scanner.truth))
+      context.print(name + ": on the spin axis by the rig, and computed for a tau of 3 mm");
+  }
   const auto& [scanner, scene, motion] = planned;
   const TermRegistry& terms = simulate::known_terms(context.run());
   context.progress(0, "bound");

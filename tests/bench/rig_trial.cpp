@@ -109,6 +109,7 @@ class RigTrial {
       if (!held.empty()) fmt::print("; held: {}", fmt::join(held, ", "));
       fmt::print("\n");
     }
+    print_fit(outcome);
     if (outcome.status != ExitStatus::done) print_reasons(outcome.console);
   }
 
@@ -133,6 +134,24 @@ class RigTrial {
   }
 
  private:
+  /// What trust in the result may rest on.
+  static void print_fit(const test::Outcome& outcome) {
+    if (std::ranges::count(outcome.files, "calibration.yaml") == 0) return;
+    const auto& report = outcome.stage("calibrate.refine").at("report");
+    double least = 1;
+    for (const auto& view : report.at("views")) least = std::min(least, view.at("share").get<double>());
+    fmt::print("      fit: {:.2f} of the beams on surfaces, views agree on {:.2f}",
+               report.at("beams").get<double>() /
+                   outcome.stage("assemble.deskew").at("report").at("points").get<double>(),
+               least);
+    if (report.contains("cross_validation"))
+      fmt::print(", cross-validation {:.2f}", report.at("cross_validation").at("ratio").get<double>());
+    const auto& quality = report.at("quality");
+    fmt::print(", RQE {:.3f} nominal, {:.3f} before, {:.3f} refined\n",
+               quality.at("rqe_before").get<double>(), quality.at("rqe_unrefined").get<double>(),
+               quality.at("rqe_after").get<double>());
+  }
+
   static void print_reasons(const std::string& console) {
     std::size_t begin = 0;
     while (begin < console.size()) {

@@ -3,6 +3,9 @@
 // wrong, or right and untrusted.
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+
 #include <crisp/calibration_file.hpp>
 
 #include "tests/end_to_end/drawn_rig.hpp"
@@ -110,6 +113,27 @@ TEST_F(AnyRig, TooLargeCountsThatSqueezeTheSceneAreFound) {
                      "scene=office", "tilted=0", "has_mixed_pixels=0", "has_sd=0", "azimuths=even"},
                     "plate.counts_per_revolution: 4096 (the rig has 16384)");
 }
+
+TEST_F(AnyRig, CountsThatSqueezeAScanThatViewsAgreeOnAreFound) {
+  is_untrusted_with(9134, {}, "plate.counts_per_revolution: 85209 (the rig has 340836)");
+  is_untrusted_with(9091, {}, "plate.counts_per_revolution: 1432 (the rig has 358)");
+}
+
+TEST_F(AnyRig, AMountThatFoldsTheSceneOntoFewSurfacesIsFound) {
+  is_untrusted_with(9146, {}, "mount: 90deg of front (the rig has 180)");
+  // Turned by another quarter, views agree, with half of the beams.
+  std::ifstream drawn(drawn_->rig());
+  std::string rig(std::istreambuf_iterator<char>(drawn), {});
+  const std::string mount = "mount: 180deg";
+  rig.replace(rig.find(mount), mount.size(), "mount: 0deg");
+  std::ofstream(fixture_ / "other.yaml") << rig;
+  const auto outcome =
+      fixture_.run("calibrate.yaml", drawn_->capture(), "other", {}, fixture_ / "other.yaml");
+  EXPECT_EQ(outcome.status, ExitStatus::not_trusted);
+  EXPECT_THAT(outcome.console, HasSubstr("mount: 90deg of front (the rig has 0)"));
+}
+
+TEST_F(AnyRig, ASlipFasterThanAPlateCanTurnIsCorrected) { is_right_and_trusted(20003, {"fault=slip"}); }
 
 TEST_F(AnyRig, BeamsThatCoincideAfterThreeTurnsAtAConstantRateShowNoWrongCounts) {
   const auto outcome = calibrate(9019, {});

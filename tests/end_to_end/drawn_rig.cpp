@@ -53,14 +53,14 @@ std::vector<std::string> plan_of(const YAML::Node& truth) {
                     lasers.empty() ? "" : ", ", entry.first.as<std::string>(), first, last, step,
                     laser["rate"].as<double>());
   }
-  const auto [slowest, fastest] = motion == "constant" ? std::pair(1.0, 1.0)
-                                  : motion == "ripple" ? std::pair(0.97, 1.03)
-                                                       : std::pair(0.6, 1.6);
+  const bool is_steady = motion == "constant" || motion == "ripple";
+  const double slowest = is_steady ? truth["rates"][0].as<double>() : 0.6 * rate;
+  const double fastest = is_steady ? truth["rates"][1].as<double>() : 1.6 * rate;
   constexpr double kLongest = 20;  // s: observability does not depend on more
   return {"scene=" + (scene == "tunnel" ? "hall" : scene),
           "motion.kind=" + (motion == "varied" || motion == "ripple" ? "varying" : motion),
-          fmt::format("motion.min_rate={}Hz", slowest * rate),
-          fmt::format("motion.max_rate={}Hz", fastest * rate),
+          fmt::format("motion.min_rate={}Hz", slowest),
+          fmt::format("motion.max_rate={}Hz", fastest),
           fmt::format("duration={}s", std::min(duration, kLongest)),
           "lasers.kinds={" + lasers + "}"};
 }

@@ -68,8 +68,9 @@ void write_truth(const std::string& path, const Setup& setup, const Effect& effe
   file << "arguments: \"" << outcome.arguments << "\"\n";
   file << "scene: " << setup.scene << "\nmotion: " << setup.motion << "\nduration: " << number(setup.duration)
        << "\n";
-  file << "turns: " << number(outcome.turns) << "\ntilt: " << number(setup.tilt)
-       << "\nheight: " << number(setup.height) << "\n";
+  file << "turns: " << number(outcome.turns) << "\nrates: [" << number(outcome.slowest) << ", "
+       << number(outcome.fastest) << "]\ntilt: " << number(setup.tilt) << "\nheight: " << number(setup.height)
+       << "\n";
   file << "fault: " << setup.fault << "\nfault_detail: \"" << setup.fault_detail << "\"\n";
   const bool is_of_one = effect.laser >= 0;
   file << "effect: {cause: " << effect.cause << ", form: " << effect.form

@@ -16,6 +16,7 @@ void write_rig(const std::string& path, const Setup& setup);
 struct Outcome {
   std::string arguments;                ///< that draw the same capture again
   double turns = 0;                     ///< range of the plate's angle [turns]
+  double slowest = 0, fastest = 0;      ///< of the plate's rates, without their signs [turns/s]
   double smallest_plate_delay = 0;      ///< [s] of any datagram
   std::vector<double> smallest_delays;  ///< [s] of any telegram, for each laser
   std::vector<std::size_t> scans;

@@ -50,7 +50,10 @@ void simulate(const std::string& seed, const std::string& folder,
   Effect effect = draw_effect(draws, static_cast<int>(setup.lasers.size()), motion, setup.duration);
   outcome.effect_rms = scale_effect(draws, setup, world, motion, effect);
   draws.require_all_used();
-  outcome.turns = motion.range() / 6.283185307179586;
+  constexpr double kTurn = 6.283185307179586;
+  outcome.turns = motion.range() / kTurn;
+  outcome.slowest = motion.slowest() / kTurn;
+  outcome.fastest = motion.fastest() / kTurn;
   const Traffic readings = send_readings(setup, motion, effect, draws.stream("readings.noise"));
   outcome.smallest_plate_delay = readings.smallest_delay;
   std::vector<Packet> packets = readings.packets;

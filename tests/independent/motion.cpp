@@ -119,6 +119,18 @@ double PlateMotion::range() const {
   return *high - *low;
 }
 
+double PlateMotion::slowest() const {
+  double least = std::abs(rates_.front());
+  for (const double rate : rates_) least = std::min(least, std::abs(rate));
+  return least;
+}
+
+double PlateMotion::fastest() const {
+  double most = 0;
+  for (const double rate : rates_) most = std::max(most, std::abs(rate));
+  return most;
+}
+
 PlateMotion draw_motion(const std::string& name, double duration, std::mt19937_64 engine) {
   Random random(engine);
   const auto draw = [&]() -> std::function<double(double)> {

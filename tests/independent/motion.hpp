@@ -16,6 +16,8 @@ class PlateMotion {
 
   double angle(double time) const;  ///< [rad], counter-clockwise seen from +z
   double range() const;             ///< largest less smallest angle [rad]
+  double slowest() const;           ///< of the rates' sizes [rad/s]
+  double fastest() const;
 
  private:
   double begin_;

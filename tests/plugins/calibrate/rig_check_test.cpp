@@ -18,6 +18,7 @@ using namespace crisp::simulate;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 /// What a calibration finds on the default rig, or on another: its truth, off the nominal values by up to 2
 /// cm, 3° and 5°.
@@ -200,6 +201,20 @@ TEST(RigCheck, AParameterOutsideItsRangeIsReportedWithItsNominalValue) {
       ElementsAre(
           HasSubstr("laser2.tau is 487.0 mm, not within tau_range (100.0 mm) of the rig's nominal 200.0 mm"),
           HasSubstr("laser3.alpha is -35.0 deg, not within alpha_range (20.1 deg)")));
+}
+
+TEST(RigCheck, WhatAStartHasHadIsNoNewContradiction) {
+  const Rig rig = default_rig();
+  Calibration start = found(9);
+  Calibration refined = start;
+  start.lasers[0].tau.value = 0.35;  // within a larger tau_range
+  start.lasers[1].lambda.value += 75 * kDegree;
+  refined.lasers[0].tau.value = 0.36;
+  refined.lasers[1].lambda.value += 76 * kDegree;
+  EXPECT_THAT(new_contradictions(refined, start, rig), IsEmpty());
+  EXPECT_THAT(check(refined).caveats, SizeIs(2));
+  refined.lasers[2].tau.value = -2.5;
+  EXPECT_THAT(new_contradictions(refined, start, rig), ElementsAre(HasSubstr("laser3.tau is -2500.0 mm")));
 }
 
 TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {

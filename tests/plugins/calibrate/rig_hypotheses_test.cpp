@@ -9,6 +9,7 @@
 #include <crisp/effect_catalogue.hpp>
 
 #include "pipeline/data/mirror_angle.hpp"
+#include "pipeline/data/oriented_plate.hpp"
 #include "pipeline/estimate/requested_terms.hpp"
 #include "tests/pipeline/estimate/support.hpp"
 
@@ -69,6 +70,17 @@ TEST_F(RigHypotheses, AMountThatTheModelEstimatesIsNotSuspected) {
   add_requested_terms(truth, {"laser2.mount.mirror_zero"}, terms_);
   EXPECT_THAT(check_mounts(SensorModel(truth, terms_), with_mounts(off), rig_with_mounts(off), settings()),
               IsEmpty());
+}
+
+TEST_F(RigHypotheses, AMountIsNamedTogetherWithTheDirectionThatHidesIt) {
+  const std::vector<double> off = {0, 3 * kDegree, 0};
+  Sample sample = with_mounts(off);
+  const PlateTrajectory plate = reversed(*sample.plate);
+  sample.plate = &plate;
+  const Rig rig = rig_with_mounts(off);
+  EXPECT_THAT(
+      RigErrorSearch(sample, rig, settings()).any().value_or(""),
+      AllOf(HasSubstr("plate.direction: clockwise, and mount: 45"), HasSubstr("of laser2 (the rig has 48)")));
 }
 
 TEST_F(RigHypotheses, MountsThatAreRightAreNotSuspected) {

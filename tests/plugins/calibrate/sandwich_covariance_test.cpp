@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <random>
 
 #include "tests/pipeline/estimate/support.hpp"
@@ -49,6 +51,31 @@ TEST(SandwichCovariance, IsTheScatterOfTheOptimaOverNoise) {
     EXPECT_LT(ratio, 1.42) << i;
   }
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(predicted).eigenvalues()[0], 0);
+}
+
+TEST(SandwichCovariance, ADirectionWithoutAMinimumLeavesTheOthersAsTheyAre) {
+  Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Eigen::Vector3d curvature(4, -1, 9);
+  const Eigen::Matrix3d hessian = turn * curvature.asDiagonal() * turn.transpose();
+  const Eigen::Matrix3d spread = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d basis = turn.transpose();  // the directions are the parameters
+  const Eigen::Vector3d ranges(0.5, 0.2, 0.1);
+  const Eigen::Matrix3d covariance = sandwich(hessian, spread, basis, ranges);
+  const Eigen::Vector3d expected(1.0 / 16, 2.0 * 2.0, 1.0 / 81);
+  EXPECT_TRUE(covariance.isApprox(Eigen::Matrix3d(expected.asDiagonal()), 1e-9)) << covariance;
+}
+
+TEST(SandwichCovariance, AnEtaAtTheEndOfWhatReadingsCoverHasOne) {
+  auto scanner = misplaced_scanner(1, 3.0);
+  const auto recording = simulate_measurements(scanner, office());
+  const SensorModel truth(recording.truth);
+  Sample sample = thin_by_area(covered(sample_of(recording), -0.2, 0.2), truth, 4000, 1);
+  const std::vector<std::size_t> free = {3};  // η₁
+  const auto last = std::ranges::max(sample.beams.time);
+  const SensorModel latest =
+      with(truth, free, Eigen::VectorXd::Constant(1, sample.plate->times().back() - last - 1e-5));
+  sample = placeable(latest, sample);
+  EXPECT_GT(sandwich_covariance(latest, sample, free, *rqe_measure(), {})(0, 0), 0);
 }
 
 }  // namespace

@@ -94,11 +94,39 @@ TEST(ClockDamage, DoesNotHoldTheRestAgainstADamagedFirstReading) {
   EXPECT_THAT(aligned.report.warnings, ::testing::IsEmpty());
 }
 
-TEST(ClockDamage, LeavesOutWhatComesAfterTheCountHasJumped) {
+TEST(ClockDamage, GoesOnAsBeforeWhereTheCountHasJumped) {
   auto readings = SimulatedPlate{}.readings(7, 10);
+  const auto as_it_was = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
   for (std::size_t i = 3000; i < readings.size(); ++i) readings[i].count += 5000;
+  for (std::size_t i = 3500; i < readings.size(); ++i) readings[i].count -= 700;
   const auto aligned = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
-  EXPECT_EQ(aligned.stretches.front().plate.size(), 3000u);
+  const PlateTrajectory& plate = aligned.stretches.front().plate;
+  ASSERT_EQ(plate.size(), readings.size());
+  for (std::size_t i = 2990; i < readings.size(); ++i)
+    ASSERT_NEAR(plate.angles()[i], as_it_was.stretches.front().plate.angles()[i], 2e-4) << i;
+  EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("its count jumped 2 time(s), by +")));
+}
+
+TEST(ClockDamage, CountsTurnsOfAnEncoderThatCountsAnewAtItsIndexPulse) {
+  auto readings = SimulatedPlate{}.readings(7, 10);
+  const auto as_it_was = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
+  const auto of_turn = static_cast<std::uint32_t>(default_rig().plate.counts_per_revolution);
+  for (PlateReading& reading : readings) reading.count %= of_turn;
+  const auto aligned = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
+  const PlateTrajectory& plate = aligned.stretches.front().plate;
+  ASSERT_EQ(plate.size(), readings.size());
+  EXPECT_THAT(aligned.report.warnings, ElementsAre(HasSubstr("its count begins anew after whole turns")));
+  const double first = as_it_was.stretches.front().plate.angles()[0] - plate.angles()[0];
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    ASSERT_NEAR(plate.angles()[i] + first, as_it_was.stretches.front().plate.angles()[i], 1e-7) << i;
+}
+
+TEST(ClockDamage, LeavesOutWhatComesAfterTheCountHasJumpedInASilence) {
+  auto readings = SimulatedPlate{}.readings(7, 10);
+  for (std::size_t i = 3000; i < readings.size(); ++i) readings[i].count += 5'000'000;
+  readings.erase(readings.begin() + 2970, readings.begin() + 3000);  // a plate may change its rate meanwhile
+  const auto aligned = align({SimulatedLaser{}.turns(7, 0, 10)}, readings);
+  EXPECT_EQ(aligned.stretches.front().plate.size(), 2970u);
   EXPECT_THAT(aligned.report.warnings, Contains(HasSubstr("lost its zero")));
 }
 
