@@ -136,10 +136,9 @@ std::optional<Finding> range_quantization(const std::string& scope, std::span<co
     squares += double{range} * double{range} / count;
   }
   // The phase of a line is known to about the telegram's rounding; its slope over the ranges gives the
-  // frequency.
+  // frequency. Ranges are rounded alike where multiples of the step lie alike: more ranges do not help.
   const double rounding = kTelegram / std::sqrt(12.0) * 2 * std::numbers::pi / step;
-  const double slope_error = rounding / std::sqrt(static_cast<double>(std::min(ranges.size(), kMax)) *
-                                                  std::max(1e-6, squares - mean * mean));
+  const double slope_error = rounding / std::sqrt(std::max(1e-6, squares - mean * mean));
   Finding finding{
       .cause = "noise.quantisation",
       .scope = scope,

@@ -25,6 +25,12 @@ TEST(SpatialOrder, NumbersCellsAlongAMortonCurve) {
   EXPECT_EQ(cell_key({-1, 0, 0}), cell_key({0, 1 << 17, 0}));
 }
 
+TEST(SpatialOrder, CellsBelowZeroAreAsLargeAsOthers) {
+  const CellLattice lattice{.low = {1, 2, 3}, .side = 0.5};
+  EXPECT_EQ(lattice.cell(1.1, 2.6, 3.9), (CellLattice::Cell{0, 1, 1}));
+  EXPECT_EQ(lattice.cell(0.9, 1.4, 2.0), (CellLattice::Cell{-1, -2, -2}));
+}
+
 TEST(SpatialOrder, HoldsEachPointOnceInTheOrderOfItsCells) {
   const auto cloud = test::random_cube(70000, 10, 1);  // more than one block
   const auto order = spatial_order(cloud.view(), 0.5);

@@ -55,5 +55,31 @@ TEST(RangeQuantization, HasTheGainOfHeldOutBlocks) {
       << "none is held out";
 }
 
+TEST(RangeQuantization, TheStepsErrorIsThatOfRoundedRanges) {
+  // The telegram rounds to millimetres: steps of 4 mm and a ten thousandth are found by their drift over the
+  // ranges.
+  constexpr int kRuns = 20;
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<float> range(1, 9);
+    const double step = 0.004 + 1e-6 * std::uniform_real_distribution<double>(-1, 1)(random);
+    std::vector<float> ranges;
+    std::vector<std::uint32_t> blocks;
+    for (std::uint32_t i = 0; i < 5000; ++i) {
+      const double on_step = step * std::round(double{range(random)} / step);
+      ranges.push_back(static_cast<float>(0.001 * std::round(on_step / 0.001)));
+      blocks.push_back(i / 100);
+    }
+    const auto found = range_quantization("laser1", ranges, blocks, seed);
+    ASSERT_TRUE(found);
+    const Parameter& one = found->parameters[0];
+    squares += (one.value - step) * (one.value - step) / (one.std_error * one.std_error);
+  }
+  // The error follows from how multiples of the step fall between millimetres, and is no normal noise.
+  EXPECT_GT(std::sqrt(squares / kRuns), 0.3);
+  EXPECT_LT(std::sqrt(squares / kRuns), 1.7);
+}
+
 }  // namespace
 }  // namespace crisp
