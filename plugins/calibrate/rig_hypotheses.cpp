@@ -25,7 +25,7 @@ namespace {
 using estimate::Sample;
 
 constexpr std::size_t kBeams = 100'000;    // enough to see whether they fit
-constexpr std::size_t kOwnBeams = 15'000;  // of one laser, where all together are tried afterwards
+constexpr std::size_t kOwnBeams = 40'000;  // of one laser: some of each scan lie in the plate's plane
 constexpr double kMore = 1.15;  // of the beams on flat surfaces, where the unchanged rig fits as well
 constexpr double kSomeMore = 1.1, kMuchLessRest = 0.5;  // and the same with beams that lie on none
 constexpr double kSteps = 20;                           // about as many changes as are tried

@@ -133,6 +133,10 @@ TEST_F(AnyRig, AMountThatFoldsTheSceneOntoFewSurfacesIsFound) {
   EXPECT_THAT(outcome.console, HasSubstr("mount: 90deg of front (the rig has 0)"));
 }
 
+TEST_F(AnyRig, AMountIsFoundAtAConstantSpeed) {
+  is_untrusted_with(9010, {}, "mount: 90deg of front (the rig has 135)");
+}
+
 TEST_F(AnyRig, ASlipFasterThanAPlateCanTurnIsCorrected) { is_right_and_trusted(20003, {"fault=slip"}); }
 
 TEST_F(AnyRig, BeamsThatCoincideAfterThreeTurnsAtAConstantRateShowNoWrongCounts) {
