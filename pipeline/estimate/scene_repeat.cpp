@@ -102,7 +102,8 @@ std::optional<SceneRepeat> scene_repeat(const Sample& sample) {
   const double close = miss_of(comparisons, kTurn, kClose);
   const double close_at_2pi = std::isfinite(close) ? close : 0;
   const double elsewhere = miss_elsewhere(comparisons);
-  std::vector<SceneRepeat> nearest;  // one for each factor
+  if (!std::isfinite(elsewhere)) return std::nullopt;  // some angles recur by chance, at an even rate
+  std::vector<SceneRepeat> nearest;                    // one for each factor
   for (const double factor : kFactors) {
     SceneRepeat best{.angle = factor * kTurn,
                      .miss = miss_of(comparisons, factor * kTurn),

@@ -119,6 +119,10 @@ TEST_F(AnyRig, CountsThatSqueezeAScanThatViewsAgreeOnAreFound) {
   is_untrusted_with(9091, {}, "plate.counts_per_revolution: 1432 (the rig has 358)");
 }
 
+TEST_F(AnyRig, CountsAreFoundAtAnEvenRateAtWhichFewAnglesRecur) {
+  is_untrusted_with(9229, {}, "plate.counts_per_revolution: 11348 (the rig has 2837)");
+}
+
 TEST_F(AnyRig, AMountThatFoldsTheSceneOntoFewSurfacesIsFound) {
   is_untrusted_with(9146, {}, "mount: 90deg of front (the rig has 180)");
   // Turned by another quarter, views agree, with half of the beams.
@@ -162,7 +166,7 @@ TEST_F(AnyRig, MountsThatAreOffByARightAngleAreFound) {
 }
 
 TEST_F(AnyRig, ExchangedLasersThatFaceEachOtherAreFound) {
-  is_untrusted_with(2009, {}, "front and left are exchanged");
+  is_untrusted_with(2009, {}, "the addresses of front and left exchanged");
 }
 
 TEST_F(AnyRig, ALaserThatSendsNothingIsNamed) {

@@ -67,6 +67,19 @@ TEST(SceneRepeat, IsNoMultipleWhereNoBeamsAreCloseAfterATurn) {
   EXPECT_TRUE(contradicts_counts(period));
 }
 
+TEST(SceneRepeat, IsNoPartOfATurnWhereTheSceneRepeatsAfterNoAngle) {
+  SceneRepeat period{
+      .angle = 0.506 * kTurn, .miss = 0.118, .at_2pi = 0.102, .close_at_2pi = 0.102, .elsewhere = 0.130};
+  EXPECT_FALSE(contradicts_counts(period));
+  period.miss = 0.036;
+  EXPECT_TRUE(contradicts_counts(period));
+}
+
+TEST(SceneRepeat, IsUndeterminedAtAnEvenRateAtWhichFewAnglesRecur) {
+  constexpr double kRate = 5;  // turns a second: ten scans a turn
+  EXPECT_FALSE(period_of([](double time, double) { return kTurn * kRate * time; }, 6));
+}
+
 TEST(SceneRepeat, DoesNotBlameTheCountsForSlips) {
   for (const double size : {2.0, 4.0, 7.0}) {
     const auto with_slips = [size](double time, double angle) {
