@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "pipeline/data/degree.hpp"
 #include "plugins/clock/hub_timings.hpp"
@@ -34,27 +33,17 @@ void warn_of_steps(const std::string& device, const char* what, const std::vecto
                                  steps.size() > 1 ? ", and less elsewhere" : ""));
 }
 
-using CountJump = clock::EncoderTimestamper::CountJump;
-
-bool is_by_whole_turns(const CountJump& jump) {
-  constexpr double kRounding = 1e-9;  // [rad]
-  return std::abs(std::remainder(jump.angle, 2 * std::numbers::pi)) < kRounding;
-}
-
-void warn_of_count_jumps(const std::string& plate, std::vector<CountJump> jumps,
+void warn_of_count_jumps(const std::string& plate, const clock::EncoderTimestamper::CountJumps& jumps,
                          std::vector<std::string>& warnings) {
-  const std::size_t by_turns = std::erase_if(jumps, is_by_whole_turns);
-  if (by_turns > 0)
+  if (jumps.by_turns > 0)
     warnings.push_back(fmt::format(
         "{}: its count begins anew after whole turns ({} time(s)), as at an index pulse; later counts are continued from before",
-        plate, by_turns));
-  if (jumps.empty()) return;
-  const auto& largest =
-      *std::ranges::max_element(jumps, {}, [](const CountJump& jump) { return std::abs(jump.angle); });
+        plate, jumps.by_turns));
+  if (jumps.others == 0) return;
   warnings.push_back(fmt::format(
       "{}: its count jumped {} time(s), by {:+.2f} deg at {:.2f} s{}, faster than a plate can turn; corrected, as if the plate had turned on as before. Check whether the encoder slips or loses counts",
-      plate, jumps.size(), largest.angle / data::kDegree, largest.time,
-      jumps.size() > 1 ? ", and less elsewhere" : ""));
+      plate, jumps.others, jumps.largest / data::kDegree, jumps.time,
+      jumps.others > 1 ? ", and less elsewhere" : ""));
 }
 
 void warn_of_device(const DeviceReport& device, std::vector<std::string>& warnings) {

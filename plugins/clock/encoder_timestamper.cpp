@@ -122,9 +122,10 @@ void EncoderTimestamper::continue_after_jump() {
   double jump = std::round(counts(last_, jumped.front()) - gone);
   // An encoder that counts anew at its index pulse.
   const double of_turns = counts_per_revolution_ * std::round(jump / counts_per_revolution_);
-  if (of_turns != 0 && std::abs(jump - of_turns) <= kByChance) jump = std::round(of_turns);
+  const bool is_by_turns = of_turns != 0 && std::abs(jump - of_turns) <= kByChance;
+  if (is_by_turns) jump = std::round(of_turns);
   const auto ahead = static_cast<std::int64_t>(jump);
-  count_jumps_.push_back({.at = jumped.front(), .counts = ahead});
+  note_jump(jumped.front(), jump, is_by_turns);
   ahead_ += ahead;
   impossible_ -= jumped.size();
   for (Reading reading : jumped) {
@@ -133,11 +134,17 @@ void EncoderTimestamper::continue_after_jump() {
   }
 }
 
-std::vector<EncoderTimestamper::CountJump> EncoderTimestamper::count_jumps() const {
-  std::vector<CountJump> jumps;
-  if (!stamps_.map()) return jumps;
-  for (const Jump& jump : count_jumps_)
-    jumps.push_back({.time = time(jump.at), .angle = static_cast<double>(jump.counts) * angle_per_count_});
+void EncoderTimestamper::note_jump(const Reading& after, double counts, bool is_by_turns) {
+  ++(is_by_turns ? count_jumps_.by_turns : count_jumps_.others);
+  const double angle = counts * angle_per_count_;
+  if (is_by_turns || std::abs(angle) <= std::abs(count_jumps_.largest)) return;
+  count_jumps_.largest = angle;
+  largest_jump_ = after;
+}
+
+EncoderTimestamper::CountJumps EncoderTimestamper::count_jumps() const {
+  CountJumps jumps = count_jumps_;
+  if (stamps_.map()) jumps.time = time(largest_jump_);
   return jumps;
 }
 

@@ -41,12 +41,14 @@ class EncoderTimestamper {
   const WindowedClockFit& clock() const { return stamps_.clock(); }
   /// With the silences before its first and after its last reading [s since the epoch].
   DeviceReport report(double begin, double end) const { return stamps_.report(begin, end); }
-  /// A jump of the count that no motion of the plate explains; later counts are continued from before it.
-  struct CountJump {
-    double time = 0;   ///< [s since the epoch]
-    double angle = 0;  ///< [rad] by which the count was ahead of the plate from then on
+  /// Jumps of the count that no motion of the plate explains. Later counts are continued from before each.
+  struct CountJumps {
+    std::uint64_t by_turns = 0;  ///< of whole turns, as at an index pulse
+    std::uint64_t others = 0;
+    double largest = 0;  ///< [rad] of the others: by how much the count was ahead of the plate from then on
+    double time = 0;     ///< [s since the epoch] of that one
   };
-  std::vector<CountJump> count_jumps() const;
+  CountJumps count_jumps() const;
   /// Readings that came after the encoder had lost its zero: of no use, the angles have nothing in common.
   std::uint64_t after_lost_zero() const { return after_lost_zero_; }
   /// Readings whose angle the plate cannot have reached since the one before them.
@@ -65,15 +67,12 @@ class EncoderTimestamper {
     std::int64_t ahead = 0;
     bool zero_is_lost = false;
   };
-  struct Jump {
-    Reading at;
-    std::int64_t counts = 0;
-  };
   double time(const Reading& reading) const;
   void undo_reset();
   void take(const Reading& next);
   void classify_jump(const Reading& next);
   void continue_after_jump();
+  void note_jump(const Reading& after, double counts, bool is_by_turns);
   /// [counts] Of the second from where the plate would be at the last rate.
   double deviation(const Reading& from, const Reading& to) const;
   bool has_jumped(const Reading& from, const Reading& to) const;
@@ -98,7 +97,8 @@ class EncoderTimestamper {
   bool zero_is_new_ = false;                   ///< and no piece has reported it
   std::int64_t ahead_ = 0;                     ///< [counts] of the encoder's readings, by jumps
   std::vector<Reading> jumped_;                ///< in a row, each from the place of the one before it
-  std::vector<Jump> count_jumps_;
+  CountJumps count_jumps_;                     ///< but for its time
+  Reading largest_jump_;                       ///< the reading after it
   std::uint64_t impossible_ = 0;
   std::uint64_t after_lost_zero_ = 0;
   std::uint64_t simultaneous_ = 0;
