@@ -117,7 +117,7 @@ void EncoderTimestamper::continue_after_jump() {
     return static_cast<double>(to.count - from.count);
   };
   const double rate_after =
-      counts(jumped.front(), jumped.back()) / (jumped.back().device - jumped.front().device);
+      counts(jumped.front(), jumped.back()) / std::max(jumped.back().device - jumped.front().device, 1e-6);
   const double gone = 0.5 * (rate_ + rate_after) * (jumped.front().device - last_.device);
   double jump = std::round(counts(last_, jumped.front()) - gone);
   // An encoder that counts anew at its index pulse.
