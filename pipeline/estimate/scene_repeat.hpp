@@ -20,8 +20,7 @@ struct SceneRepeat {
 /// Compares the ranges of the same beam of the same laser after one turn and another, without any
 /// calibration: for periods within 8 % of 2π, and of its half, third and quarter and as many times as much.
 ///
-/// @return nothing where the plate did not turn by more than a turn and a fifth, or where too few beams can
-/// be
+/// @return nothing where the plate turned by less than a turn and a fifth, or where too few beams can be
 ///         compared, as at an even rate of the plate
 std::optional<SceneRepeat> scene_repeat(const Sample& sample);
 

@@ -25,6 +25,12 @@ struct Limit {
   std::string option;  ///< of calibrate.rqe, if the rig gives no standard deviation
 };
 
+/// How far a value is above its nominal one; an angle the shorter way round.
+double off_nominal(const Parameter& found, const Parameter& nominal) {
+  const double difference = found.value - nominal.value;
+  return nominal.unit == "rad" ? std::remainder(difference, kFullTurn) : difference;
+}
+
 Limit limit_of(const Parameter& nominal, double range) {
   if (nominal.std_error > 0) return {.size = kReach * nominal.std_error, .option = {}};
   return {.size = range, .option = nominal.name + "_range"};
@@ -32,10 +38,7 @@ Limit limit_of(const Parameter& nominal, double range) {
 
 void add_if_outside(const std::string& laser, const Parameter& found, const Parameter& nominal,
                     const Limit& limit, std::vector<std::string>& caveats) {
-  const bool is_angle = nominal.unit == "rad";
-  const double off =
-      is_angle ? std::remainder(found.value - nominal.value, kFullTurn) : found.value - nominal.value;
-  if (limit.size == 0 || std::abs(off) <= limit.size) return;
+  if (limit.size == 0 || std::abs(off_nominal(found, nominal)) <= limit.size) return;
   const data::ShownUnit unit = data::shown_unit(nominal.unit);
   const std::string what =
       limit.option.empty() ? fmt::format("{} standard deviations", kReach) : limit.option;
@@ -73,22 +76,21 @@ std::vector<std::string> exchanged_by_tau(const Calibration& found, const Rig& r
 /// λ without a standard deviation, which is searched around the whole circle.
 bool is_elsewhere(const Parameter& found, const Parameter& nominal) {
   constexpr double kFar = 45 * data::kDegree;  // three standard deviations of a rough value
-  const double off = std::abs(std::remainder(found.value - nominal.value, kFullTurn));
-  return nominal.std_error == 0 && off >= kFar + kReach * found.std_error;
+  return nominal.std_error == 0 && std::abs(off_nominal(found, nominal)) >= kFar + kReach * found.std_error;
 }
 
 std::string elsewhere(const LaserCalibration& found, const Parameter& nominal) {
-  const double off = std::abs(std::remainder(found.lambda.value - nominal.value, kFullTurn));
   return fmt::format(
       "{}.lambda is {:.1f} deg, {:.0f} deg from the rig's nominal {:.1f} deg: a laser has another's address, a nominal lambda is wrong, or the calibration is in a wrong local minimum. Check the addresses and each lambda in the rig, or give lambda an sd",
-      found.name, found.lambda.value / data::kDegree, off / data::kDegree, nominal.value / data::kDegree);
+      found.name, found.lambda.value / data::kDegree,
+      std::abs(off_nominal(found.lambda, nominal)) / data::kDegree, nominal.value / data::kDegree);
 }
 
 /// The limit where the rig has a standard deviation; else the range, which a start outside of it widens.
 Limit limit_from(const Parameter& start, const Parameter& nominal, double range) {
   Limit limit = limit_of(nominal, range);
-  const double off = std::abs(start.value - nominal.value);
-  if (!limit.option.empty() && off > range) limit.size += off;
+  const double of_start = std::abs(off_nominal(start, nominal));
+  if (!limit.option.empty() && of_start > range) limit.size += of_start;
   return limit;
 }
 

@@ -3,11 +3,10 @@
 // wrong, or right and untrusted.
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <iterator>
-
+#include <crisp/atomic_file.hpp>
 #include <crisp/calibration_file.hpp>
 
+#include "pipeline/files/yaml.hpp"
 #include "tests/end_to_end/drawn_rig.hpp"
 #include "tests/end_to_end/pipeline_fixture.hpp"
 
@@ -126,11 +125,10 @@ TEST_F(AnyRig, CountsAreFoundAtAnEvenRateAtWhichFewAnglesRecur) {
 TEST_F(AnyRig, AMountThatFoldsTheSceneOntoFewSurfacesIsFound) {
   is_untrusted_with(9146, {}, "mount: 90deg of front (the rig has 180)");
   // Turned by another quarter, views agree, with half of the beams.
-  std::ifstream drawn(drawn_->rig());
-  std::string rig(std::istreambuf_iterator<char>(drawn), {});
+  std::string rig = files::read_text_file(drawn_->rig(), 1 << 20);
   const std::string mount = "mount: 180deg";
   rig.replace(rig.find(mount), mount.size(), "mount: 0deg");
-  std::ofstream(fixture_ / "other.yaml") << rig;
+  write_file(fixture_ / "other.yaml", rig);
   const auto outcome =
       fixture_.run("calibrate.yaml", drawn_->capture(), "other", {}, fixture_ / "other.yaml");
   EXPECT_EQ(outcome.status, ExitStatus::not_trusted);

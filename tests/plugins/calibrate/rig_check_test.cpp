@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include <crisp/sensor_model.hpp>
 
 #include "pipeline/data/oriented_plate.hpp"
@@ -213,8 +215,11 @@ TEST(RigCheck, WhatAStartHasHadIsNoNewContradiction) {
   refined.lasers[1].lambda.value += 76 * kDegree;
   EXPECT_THAT(new_contradictions(refined, start, rig), IsEmpty());
   EXPECT_THAT(check(refined).caveats, SizeIs(2));
+  start.lasers[2].alpha.value += 2 * std::numbers::pi;  // the same angle widens no range
   refined.lasers[2].tau.value = -2.5;
-  EXPECT_THAT(new_contradictions(refined, start, rig), ElementsAre(HasSubstr("laser3.tau is -2500.0 mm")));
+  refined.lasers[2].alpha.value += 30 * kDegree;
+  EXPECT_THAT(new_contradictions(refined, start, rig),
+              ElementsAre(HasSubstr("laser3.tau is -2500.0 mm"), HasSubstr("laser3.alpha is")));
 }
 
 TEST(RigCheck, TheRigsStandardDeviationsAreItsLimits) {
